@@ -1,0 +1,148 @@
+"""Typed commands: what one checked block asks of the motion. Axes by column, lengths in slide millimetres
+(a diameter axis in radius), angles in degrees, speeds in rpm."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from controller.gearbox import GearBox
+from controller.span import Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Feed:
+    """The feed of a cutting move."""
+
+    value: float
+    """[mm/s | deg/s], or per revolution of the work [mm | deg]"""
+    per_revolution: bool = False
+    measured: bool = False
+    """per revolution by the measured speed of the work axis (parameter 201#2 = 0, and always out of sync)"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Move:
+    """G00 (`feed` None) or G01 to absolute and by incremental positions, Cartesian."""
+
+    absolute: Mapping[int, float]
+    incremental: Mapping[int, float]
+    feed: Feed | None
+    spans: Mapping[int, Span]
+    """where each axis was commanded"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MachineMove:
+    """G53: rapid to slide positions."""
+
+    target: Mapping[int, float]
+    spans: Mapping[int, Span]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceReturn:
+    """G28 from the intermediate point, M19: the axes go to their first reference points."""
+
+    axes: tuple[int, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dwell:
+    """G04."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Couple:
+    """G81, G51.2: engage the gear box, or engage it anew."""
+
+    gear: GearBox
+    phase: float = 0.0
+    """R of G51.2: the master turns by so much first [deg]"""
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Uncouple:
+    """G80, G50.2."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleSpeed:
+    """An axis turns at a speed [rpm], signed; `wait` for it to be reached (S0, M05)."""
+
+    axis: int
+    rpm: float
+    wait: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SurfaceSpeed:
+    """G96: the work spindle keeps a surface speed at the programmed diameter of X."""
+
+    axis: int
+    speed: float
+    """[m/min], signed by M03 or M04"""
+    clamp: float
+    """[rpm]"""
+    radial: int
+    """column of X"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetCoordinates:
+    """G50 X Z: the absolute positions become these."""
+
+    absolute: Mapping[int, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShiftCoordinates:
+    """G54-G59, T: the zero point moves by so much; absolute positions shrink by it."""
+
+    shift: Mapping[int, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SelectTool:
+    """T: this tool is in use from now on."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coolant:
+    """M08, M09."""
+
+    on: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProgramStop:
+    """M00, M01 with the optional-stop signal."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProgramEnd:
+    """M30, M02, or the end of the text: spindles stop, then the program is finished."""
+
+
+Command = (
+    Move
+    | MachineMove
+    | ReferenceReturn
+    | Dwell
+    | Couple
+    | Uncouple
+    | SpindleSpeed
+    | SurfaceSpeed
+    | SetCoordinates
+    | ShiftCoordinates
+    | SelectTool
+    | Coolant
+    | ProgramStop
+    | ProgramEnd
+)

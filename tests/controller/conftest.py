@@ -1,0 +1,98 @@
+"""Fixtures: a program run without machine, and a controller driven against an ideal machine."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from controller.clock import Chunk, Feedback
+from controller.cnc import Controller
+from controller.dry_run import DryRun, dry_run
+from controller.offsets import Offsets
+from controller.parameters import delivered
+from controller.source import parse_program
+
+
+class IdealDrives:
+    """Drives that follow exactly; the only law they know is that of `Follow`, written out tick by tick."""
+
+    def advance(self, chunk: Chunk) -> Feedback:
+        reached = np.array(chunk.setpoint)
+        for row in reached:
+            for link in chunk.couplings:
+                row[link.slave] += link.offset + link.numerator / link.denominator * row[link.master]
+        return Feedback(ticks=chunk.ticks, setpoint=reached, actual=reached)
+
+
+@dataclass(frozen=True)
+class Driven:
+    controller: Controller
+    setpoint: np.ndarray
+    """(n, axes)"""
+    block: np.ndarray
+    sync: np.ndarray
+    tool: np.ndarray
+
+    def axis(self, letter: str) -> np.ndarray:
+        return self.setpoint[:, self.controller.axes.index(letter)]
+
+
+@pytest.fixture
+def run() -> Callable[..., DryRun]:
+    def _run(
+        text: str,
+        setup: str = "hobbing",
+        parameters: Mapping[str, str | float] | None = None,
+        offsets: Offsets | None = None,
+        signals: Mapping[str, bool] | None = None,
+    ) -> DryRun:
+        return dry_run(parse_program(text), delivered(setup, parameters), offsets, signals)
+
+    return _run
+
+
+@pytest.fixture
+def drive() -> Callable[..., Driven]:
+    def _drive(
+        text: str,
+        setup: str = "hobbing",
+        parameters: Mapping[str, str | float] | None = None,
+        offsets: Offsets | None = None,
+        limit: int = 4096,
+        drives: object | None = None,
+        tick_s: float = 0.001,
+    ) -> Driven:
+        machine = drives or IdealDrives()
+        controller = Controller(
+            parse_program(text), parameters=delivered(setup, parameters), offsets=offsets, tick_s=tick_s
+        )
+        chunks, reached = [], []
+        while (chunk := controller.propose(limit)).ticks:
+            assert chunk.ticks <= limit
+            assert chunk.first_tick == controller.tick
+            feedback = machine.advance(chunk)
+            controller.commit(feedback)
+            chunks.append(chunk)
+            reached.append(feedback.setpoint)
+        none = np.zeros((0, len(controller.axes)))
+        return Driven(
+            controller=controller,
+            setpoint=np.concatenate([none, *reached]),
+            block=np.concatenate([[], *(chunk.block for chunk in chunks)]).astype(int),
+            sync=np.concatenate([[], *(chunk.sync for chunk in chunks)]).astype(bool),
+            tool=np.concatenate([[], *(chunk.tool for chunk in chunks)]).astype(int),
+        )
+
+    return _drive
+
+
+@pytest.fixture
+def alarm_of(run: Callable[..., DryRun]) -> Callable[..., str | None]:
+    """The number of the first alarm of a program, or None."""
+
+    def _alarm_of(*args: object, **options: object) -> str | None:
+        alarms = run(*args, **options).alarms
+        return alarms[0].number if alarms else None
+
+    return _alarm_of

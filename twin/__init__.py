@@ -1,0 +1,1 @@
+"""The machine and the metal: jobs, kinematics, cutters, cutting, inspection, report."""

@@ -1,0 +1,1 @@
+"""Where every cutting edge of a tool is."""

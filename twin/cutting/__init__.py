@@ -1,0 +1,1 @@
+"""Recorded motion and cutting edges in, part mesh out."""

@@ -1,0 +1,158 @@
+"""The general way: any motion, any tools, on a cylindrical grid."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.crossings import find_crossings, leaf_cells, node_depths
+from twin.cutting.dual import Cells, Surface, contour
+from twin.cutting.field import DepthField
+from twin.cutting.grid import grid_around
+from twin.cutting.motion import CutterMotion
+from twin.cutting.refine import refine
+from twin.cutting.stock import Blank, Remains, subtract
+from twin.cutting.sweep import Sweep
+from twin.errors import PartError
+
+Floats = NDArray[np.float64]
+Progress = Callable[[str, float], None]
+
+CELLS = 250_000
+"""Surface cells aimed at where no cell size is asked for."""
+CHECKED = 250
+"""Vertices that every run holds against all passes, unculled."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CutResult:
+    """A cut part and how it came about."""
+
+    remains: Remains
+    method: str
+    """which mesher made it"""
+    cell_mm: tuple[float, float, float]
+    """of the grid, along r, theta, z"""
+    passes: int
+    """cutting passes that came near the stock"""
+    pairs: int
+    """pairs of block and pass evaluated while searching for the surface"""
+    checked: int
+    """vertices of the cut surface held against all passes"""
+    largest_error_um: float
+    """largest distance of those from the envelope of all passes"""
+    notes: tuple[str, ...]
+
+
+def cut(
+    blank: Blank,
+    tools: tuple[tuple[Cutter, CutterMotion], ...],
+    *,
+    cell_mm: float | None = None,
+    progress: Progress = lambda _stage, _share: None,
+) -> CutResult:
+    """Cut the blank by everything the tools sweep.
+
+    `cell_mm` is the grid's cell across the surface (twice that along z); left out, it follows from the
+    teeth and the size of the blank. Raises PartError where nothing is left or the motion is not modelled.
+    """
+    progress("passes", 0.0)
+    sweep = Sweep(tuple(DepthField(c, m, blank.radius, blank.z_range) for c, m in tools))
+    notes: list[str] = []
+    if sweep.count == 0:
+        notes.append("the tool never came near the blank: nothing was cut")
+        return CutResult(
+            remains=subtract(blank, None), method="none", cell_mm=(0.0, 0.0, 0.0), passes=0, pairs=0,
+            checked=0, largest_error_um=0.0, notes=tuple(notes),
+        )  # fmt: skip
+    cell = cell_mm or _cell(blank, tools)
+    lowest = max(0.02 * blank.radius, 0.5 * blank.bore_mm, min(_closest(c, m) for c, m in tools))
+    low = max(lowest - 2.5 * cell, 0.01 * blank.radius)
+    if low >= blank.radius:
+        low = blank.radius - 3 * cell
+    grid = grid_around(
+        r_low=low,
+        r_high=blank.radius,
+        z_low=blank.z_range[0],
+        z_high=blank.z_range[1],
+        cell=(cell, cell, 2.0 * cell),
+    )
+    progress("searching the cut surface", 0.1)
+    leaves = refine(sweep, grid)
+    progress("crossings", 0.5)
+    depth = node_depths(sweep, grid, leaves)
+    surface = None
+    errors = np.zeros(0)
+    if (depth > 0).any():
+        if (depth[1] > 0).any() and low > 0.5 * blank.bore_mm and lowest <= 0.02 * blank.radius:
+            notes.append(f"the cut reaches the work axis; a core of {2 * grid.r[1]:.2f} mm is kept")
+        crossings = find_crossings(sweep, grid, leaves, depth)
+        cell_low, case, leaf = leaf_cells(grid, leaves, depth)
+        progress("meshing", 0.7)
+        surface = contour(sweep, grid, Cells(cell_low, case, leaves.candidates.of(leaf)), crossings)
+        progress("checking", 0.8)
+        errors = _check(sweep, surface, blank)
+    else:
+        notes.append("the tool passed the blank without touching it: nothing was cut")
+    progress("cutting the blank", 0.9)
+    remains = subtract(blank, surface)
+    if remains.loose_volumes_mm3:
+        notes.append(
+            f"{len(remains.loose_volumes_mm3)} severed piece(s), the largest of "
+            f"{remains.loose_volumes_mm3[0]:.3g} mm³, fell off the part"
+        )
+    progress("done", 1.0)
+    return CutResult(
+        remains=remains,
+        method="general (cylindrical grid, dual contouring)",
+        cell_mm=grid.cell_mm,
+        passes=sweep.count,
+        pairs=leaves.pairs,
+        checked=len(errors),
+        largest_error_um=float(errors.max(initial=0.0)) * 1e3,
+        notes=tuple(notes),
+    )
+
+
+def _cell(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> float:
+    """Cell size [mm]: a sixtieth of the tooth pitch, or what keeps to CELLS on a toothed blank."""
+    pitch = min(c.profile.pitch for c, _ in tools)
+    fine = pitch / 60.0 if math.isfinite(pitch) else blank.radius / 120.0
+    area = 2.0 * math.pi * blank.diameter_mm * (blank.length_mm + blank.radius * 0.1)
+    return max(fine, math.sqrt(area / (2.0 * CELLS)))
+
+
+def _closest(cutter: Cutter, motion: CutterMotion) -> float:
+    """Smallest radius of the work that the tool's tips may reach [mm]."""
+    axis = motion.basis[2]
+    across = np.cross(axis, [0.0, 0.0, 1.0])
+    length = np.linalg.norm(across)
+    if length < 1e-6:
+        distance = np.hypot(motion.centre[:, 0], motion.centre[:, 1])
+    else:
+        distance = np.abs(motion.centre @ (across / length))
+    offset = float(np.linalg.norm(motion.mount.translation[:2]))
+    return max(float(distance.min()) - cutter.radius - offset, 0.0)
+
+
+def _check(sweep: Sweep, surface: Surface, blank: Blank) -> Floats:
+    """Distances [mm] of random vertices of the cut surface from the envelope of all passes, unculled.
+
+    A vertex on an edge of the cut stands off by the shape of the edge; the field tells its distance all
+    the same. Vertices on the closing faces outside the blank are left out.
+    """
+    v = surface.vertices
+    low, high = blank.z_range
+    r = np.hypot(v[:, 0], v[:, 1])
+    inside = np.flatnonzero((r < blank.radius) & (r > 0.5 * blank.bore_mm) & (v[:, 2] > low) & (v[:, 2] < high))
+    if not len(inside):
+        return np.zeros(0)
+    chosen = np.random.default_rng(0).choice(inside, min(CHECKED, len(inside)), replace=False)
+    passes = np.arange(sweep.count)
+    rounds = [sweep.evaluate(np.broadcast_to(p, (len(passes), 3)), passes).depth.max() for p in v[chosen]]
+    if not np.isfinite(rounds).all():
+        raise PartError("the cut surface has points that no pass can have made")
+    return np.abs(np.array(rounds))

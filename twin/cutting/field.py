@@ -1,0 +1,201 @@
+"""The depth field: how deep a point of the stock lies inside the sweep of each cutting pass.
+
+A pass is one edge swinging past the work. In it a point of the stock meets the rake plane at one instant;
+its depth in the edge's outline at that instant is the pass's field value, positive where the point is cut
+away. The removed stock is where the largest of all passes is positive; that largest value is the signed
+distance to the cut surface, but for the slow motion of the stock in the rake plane.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.motion import CutterMotion
+from twin.cutting.passes import Passes, find_passes
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SETTLED = 1e-4
+"""Residual angle [rad] below which one linear step ends the search for the meeting instant: it leaves half
+the stock's acceleration over that angle, 1e-8 of the work radius."""
+ROUNDS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """Where and how pairs of point and pass meet; arrays over pairs."""
+
+    depth: Floats
+    """(m,) [mm] positive = removed by this pass"""
+    gradient: Floats
+    """(m, 3) of the depth in the part frame; (0, 3) unless asked for"""
+    s: Floats
+    """(m,) axial position against the edge's outline [mm]"""
+    rho: Floats
+    """(m,) distance from the tool axis [mm]"""
+    instant: Floats
+    """(m,) sample (fractional) of the motion at which they meet"""
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """Points seen from the tool at given instants."""
+
+    cos: Floats
+    """of the work angle"""
+    sin: Floats
+    side: Floats
+    """(2, m) position across the tool axis, along basis 0 and 1"""
+    rho: Floats
+    s: Floats
+    rho_rate: Floats
+    """per sample, like the following"""
+    s_rate: Floats
+    lag: Floats
+    """[rad] edge angle minus point angle"""
+    lag_rate: Floats
+    tool_angle: Floats
+    tool_rate: Floats
+
+
+class DepthField:
+    """The field of all passes of one tool."""
+
+    def __init__(
+        self, cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]
+    ) -> None:
+        self.cutter = cutter
+        self.passes: Passes = find_passes(cutter, motion, stock_radius, stock_z)
+        self._basis = motion.basis
+        self._mount = motion.mount
+        rows = np.column_stack([motion.work_angle, motion.tool_angle, motion.centre]).T
+        self._table = np.ascontiguousarray(np.vstack([rows[:, :-1], np.diff(rows, axis=1)]))
+        samples = np.arange(rows.shape[1], dtype=float)
+        at = [np.interp(self.passes.at, samples, row) for row in rows]
+        self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
+        gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < math.pi
+        self._partial = gap.any(axis=1)
+
+    def evaluate(self, points: Floats, index: Ints, *, gradient: bool = False) -> Meeting:
+        """Field of pass `index[i]` at `points[i]` (m, 3) in the part frame [mm]."""
+        p = self.passes
+        local = (points @ self._mount.rotation.T + self._mount.translation).T
+        first, last, angle = p.first[index], p.last[index], p.angle[index]
+        at = p.at[index]
+        state = self._state(local, at, angle)
+        for _ in range(ROUNDS):
+            at = np.clip(at - state.lag / state.lag_rate, first, last)
+            state = self._state(local, at, angle)
+            if np.abs(state.lag).max(initial=0.0) < SETTLED or not self._unsettled(state, at, first, last):
+                break
+        end = np.clip(at - state.lag / state.lag_rate, first, last)
+        step = end - at
+        s = state.s + state.s_rate * step
+        rho = state.rho + state.rho_rate * step
+        outline = s - p.shift[index]
+        depth, by_s, by_rho = self.cutter.profile.depth(outline, rho)
+        if math.isfinite(self.cutter.half_length):
+            off = s - self.cutter.shift
+            inside = self.cutter.half_length - np.abs(off)
+            past = inside < depth
+            depth = np.where(past, inside, depth)
+            by_s = np.where(past, -np.sign(off), by_s)
+            by_rho = np.where(past, 0.0, by_rho)
+        if self._partial.any():
+            # where the tool stops turning, its sweep ends at the rake plane itself
+            tool_angle = state.tool_angle + state.tool_rate * step
+            run = p.run_angle[index]
+            to_rake = np.minimum(tool_angle - run[:, 0], run[:, 1] - tool_angle)
+            to_rake = to_rake - np.abs(state.lag + state.lag_rate * step)
+            depth = np.where(self._partial[index], np.minimum(depth, rho * to_rake), depth)
+        slope = self._gradient(state, by_s, by_rho) if gradient else np.zeros((0, 3))
+        return Meeting(depth, slope, outline, rho, end)
+
+    def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats, Floats]:
+        """Proved bounds on the field within `radius` (m,) of the points of a meeting [mm].
+
+        Returns
+        - change: how much the depth can change at most;
+        - bent: how far the map from space to the rake plane departs from its tangent. With the depth of a
+          tooth concave in that plane, tangent + bent bounds the field from above, and a convex combination
+          of its values − 2 bent from below, but for
+        - excess: what a neighbouring tooth or the land can add to it.
+
+        Writing M(p) = G(p, t(p)) for the map and a for the edge's speed across the rake plane, slant = v/a,
+        turn = C'/a: |G_pp| <= 1/rho, |G_pt| <= C' + v/rho, |G_tt| <= C'v + v²/rho, |t_p| <= 1/a and
+        |t_pp| <= (1/rho + 2 (2 slant/rho + turn) + ...)/a, in sum (1 + slant)^4/rho + 2 (1 + slant)² turn.
+        A velocity jump between two samples adds its share of the way that remains.
+        """
+        p = self.passes
+        slant = p.slant[index]
+        reach = radius * np.sqrt(1.0 + slant**2)
+        inner = np.maximum(meeting.rho - reach, 1e-6)
+        curvature = (1.0 + slant) ** 4 / inner + 2.0 * (1.0 + slant) ** 2 * p.turn[index]
+        jumps = 1.0 + 2.0 * radius * p.samples[index]
+        bent = 0.5 * curvature * radius**2 + p.jolt[index] * radius * jumps
+        bent[self._partial[index]] = np.inf
+        return reach, bent, self.cutter.profile.takeover(meeting.s, meeting.rho, reach)
+
+    def near(self, point: Floats, radius: float) -> Ints:
+        """Passes whose tool may come within `radius` of a point (3,) of the part [mm]."""
+        local = self._mount.rotation @ point + self._mount.translation
+        state = self._seen
+        x = local[0] * state[0] - local[1] * state[1] - state[2]
+        y = local[0] * state[1] + local[1] * state[0] - state[3]
+        z = local[2] - state[4]
+        a, b, _ = self._basis @ np.stack([x, y, z])
+        return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel)
+
+    @staticmethod
+    def _unsettled(state: _State, at: Floats, first: Floats, last: Floats) -> bool:
+        """Whether a point is left that can still come closer to its meeting instant."""
+        free = np.abs(state.lag) >= SETTLED
+        wanted = at - state.lag / state.lag_rate
+        held = ((at == first) & (wanted < first)) | ((at == last) & (wanted > last))
+        return bool((free & ~held).any())
+
+    def _state(self, local: Floats, at: Floats, angle: Floats) -> _State:
+        """Points `local` (3, m) at fractional samples `at` (m,), edges at unwrapped tool `angle`."""
+        cell = np.minimum(at.astype(np.int64), self._table.shape[1] - 1)
+        part = at - cell
+        work, tool, cx, cy, cz, d_work, d_tool, d_cx, d_cy, d_cz = self._table.take(cell, axis=1)
+        work = work + part * d_work
+        cos, sin = np.cos(work), np.sin(work)
+        x = local[0] * cos - local[1] * sin
+        y = local[0] * sin + local[1] * cos
+        offset = np.stack([x - cx - part * d_cx, y - cy - part * d_cy, local[2] - cz - part * d_cz])
+        rate = np.stack([-y * d_work - d_cx, x * d_work - d_cy, -d_cz])
+        a, b, s = self._basis @ offset
+        a_rate, b_rate, s_rate = self._basis @ rate
+        rho2 = a * a + b * b
+        rho = np.sqrt(rho2)
+        tool = tool + part * d_tool
+        lag = tool - angle - np.arctan2(b, a)
+        lag_rate = d_tool - (a * b_rate - b * a_rate) / rho2
+        return _State(
+            cos=cos,
+            sin=sin,
+            side=np.stack([a, b]),
+            rho=rho,
+            s=s,
+            rho_rate=(a * a_rate + b * b_rate) / rho,
+            s_rate=s_rate,
+            lag=lag,
+            lag_rate=lag_rate,
+            tool_angle=tool,
+            tool_rate=d_tool,
+        )
+
+    def _gradient(self, state: _State, by_s: Floats, by_rho: Floats) -> Floats:
+        """Gradient (m, 3) in the part frame, the meeting instant following the point."""
+        a, b = state.side / state.rho
+        # d instant / d point = e_psi / (rho lag_rate)
+        drift = (by_s * state.s_rate + by_rho * state.rho_rate) / (state.rho * state.lag_rate)
+        across = np.stack([by_rho * a - drift * b, by_rho * b + drift * a, by_s])
+        gx, gy, gz = self._basis.T @ across
+        turned = np.stack([gx * state.cos + gy * state.sin, gy * state.cos - gx * state.sin, gz], axis=1)
+        return turned @ self._mount.rotation

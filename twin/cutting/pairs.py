@@ -1,0 +1,88 @@
+"""Ragged lists of pairs (item, pass), and work on them in batches that fit the cache."""
+
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+T = TypeVar("T")
+
+BATCH = 1 << 13
+"""Pairs in one batch: every intermediate array stays under the 128 KiB that malloc keeps at hand."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """For each item the passes that may be the deepest one there."""
+
+    start: Ints
+    """(n + 1,) where each item's list begins in `passes`"""
+    passes: Ints
+    """(m,) pass numbers"""
+
+    @property
+    def count(self) -> int:
+        """Number of items."""
+        return len(self.start) - 1
+
+    def owner(self) -> Ints:
+        """(m,) item of each pair."""
+        return np.repeat(np.arange(self.count), np.diff(self.start))
+
+    def of(self, items: Ints) -> "Candidates":
+        """The lists of some items, in their order; an item may come more than once."""
+        length = np.diff(self.start)[items]
+        start = np.concatenate([[0], np.cumsum(length)])
+        inside = np.arange(start[-1]) - np.repeat(start[:-1], length)
+        return Candidates(start, self.passes[np.repeat(self.start[items], length) + inside])
+
+    def where(self, keep: NDArray[np.bool_]) -> "Candidates":
+        """The lists without the pairs that are not kept (m,)."""
+        kept = np.concatenate([[0], np.cumsum(keep)])
+        return Candidates(kept[self.start], self.passes[keep])
+
+
+def join(parts: list[Candidates]) -> Candidates:
+    """Lists of several parts, one after the other."""
+    if not parts:
+        return Candidates(np.zeros(1, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    lengths = np.concatenate([np.diff(p.start) for p in parts])
+    return Candidates(
+        np.concatenate([[0], np.cumsum(lengths)]), np.concatenate([p.passes for p in parts])
+    )
+
+
+def batches(start: Ints) -> Iterator[slice]:
+    """Slices of items with about BATCH pairs each."""
+    cut = np.searchsorted(start, np.arange(BATCH, start[-1] + BATCH, BATCH))
+    low = 0
+    for high in np.unique(np.minimum(cut, len(start) - 1)):
+        if high > low:
+            yield slice(low, int(high))
+            low = int(high)
+    if low < len(start) - 1:
+        yield slice(low, len(start) - 1)
+
+
+def in_parallel(work: Callable[[slice], T], slices: Iterator[slice]) -> list[T]:
+    """`work` on every slice, results in order; the arrays' own loops run outside the interpreter lock."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(work, slices))
+
+
+def leaders(values: Floats, start: Ints) -> tuple[Floats, Ints]:
+    """Largest value of each non-empty list and the position where it first stands.
+
+    Lists must not be empty.
+    """
+    largest = np.maximum.reduceat(values, start[:-1])
+    hit = np.flatnonzero(values == np.repeat(largest, np.diff(start)))
+    first = hit[np.searchsorted(hit, start[:-1])]
+    return largest, first

@@ -1,0 +1,193 @@
+"""Every time a cutting edge swings past the side of the tool that faces the work."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.motion import CutterMotion
+from twin.errors import PartError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+REACH = 0.6 * math.pi
+"""Half the angle about the tool, from tool angle 0, in which stock can stand [rad]: it faces the work."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Passes:
+    """The passes of one tool in order of time. Time is counted in samples of the motion (fractional)."""
+
+    at: Floats
+    """(k,) when the edge points along tool angle 0, clipped to the run of one-way turning it belongs to"""
+    angle: Floats
+    """(k,) unwrapped tool angle [rad] at which it does"""
+    shift: Floats
+    """(k,) axial shift of the edge [mm]"""
+    first: Floats
+    """(k,) start of the run of one-way turning"""
+    last: Floats
+    """(k,) its end"""
+    travel: Floats
+    """(k,) bound on how far a point of the stock moves against the tool carrier during the pass [mm]"""
+    run_angle: Floats
+    """(k, 2) tool angle at the lower and the upper end of the run [rad]"""
+    slant: Floats
+    """(k,) bound on the stock's speed over the edge's speed across the rake plane"""
+    turn: Floats
+    """(k,) bound on the work's turn per way of the edge across the rake plane [rad/mm]"""
+    jolt: Floats
+    """(k,) bound on the velocity jump between two samples over the edge's speed"""
+    samples: Floats
+    """(k,) bound on the samples per way of the edge across the rake plane [1/mm]"""
+
+    @property
+    def count(self) -> int:
+        """Number of passes."""
+        return len(self.at)
+
+
+def find_passes(cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]) -> Passes:
+    """All passes that may touch a stock cylinder of this radius between these z.
+
+    Raises PartError where the work moves past the edge faster than the tool turns, so that a point could
+    meet one edge twice in a pass.
+    """
+    starts, ends = _runs(motion.tool_angle)
+    rows: list[tuple[Floats, Floats, Ints, Floats, Floats]] = []
+    for a, b in zip(starts, ends, strict=True):
+        angle = motion.tool_angle[a : b + 1]
+        index = np.arange(a, b + 1, dtype=float)
+        if angle[-1] < angle[0]:
+            angle, index = angle[::-1], index[::-1]
+        for gash, offset in enumerate(cutter.gash_angle):
+            lowest = math.ceil((angle[0] - REACH + offset) / (2 * math.pi))
+            highest = math.floor((angle[-1] + REACH + offset) / (2 * math.pi))
+            target = 2 * math.pi * np.arange(lowest, highest + 1) - offset
+            at = np.interp(target, angle, index)
+            ones = np.ones(len(target))
+            rows.append((at, target, np.full(len(target), gash), a * ones, b * ones))
+    if not rows:
+        shapes = {name: (0, 2) if name == "run_angle" else (0,) for name in Passes.__dataclass_fields__}
+        return Passes(**{name: np.zeros(shape) for name, shape in shapes.items()})
+    at, angle, gash, first, last = (np.concatenate(column) for column in zip(*rows, strict=True))
+    order = np.lexsort((gash, angle, at))
+    passes = _bounded(
+        cutter, motion, stock_radius, at[order], angle[order], gash[order], first[order], last[order]
+    )
+    return _engaged(passes, cutter, motion, stock_radius, stock_z)
+
+
+def _runs(angle: Floats) -> tuple[Ints, Ints]:
+    """First and last samples of the stretches in which the tool turns one way."""
+    way = np.sign(np.diff(angle))
+    if not way.any():
+        none = np.zeros(0, dtype=np.int64)
+        return none, none
+    change = np.flatnonzero(np.diff(way)) + 1
+    starts = np.concatenate([[0], change])
+    ends = np.concatenate([change, [len(way)]])
+    turning = way[starts] != 0
+    return starts[turning], ends[turning]
+
+
+def _bounded(
+    cutter: Cutter,
+    motion: CutterMotion,
+    stock_radius: float,
+    at: Floats,
+    angle: Floats,
+    gash: Ints,
+    first: Floats,
+    last: Floats,
+) -> Passes:
+    """Attach to each pass the bounds that the culling proofs need."""
+    samples = np.arange(len(motion.tool_angle), dtype=float)
+    work_rate = np.abs(np.diff(motion.work_angle))
+    tool_rate = np.abs(np.diff(motion.tool_angle))
+    slide_rate = np.linalg.norm(np.diff(motion.centre, axis=0), axis=1)
+    speed = stock_radius * work_rate + slide_rate
+    # window of samples in which the edge is within REACH of the work's side
+    way = np.where(motion.tool_angle[last.astype(int)] > motion.tool_angle[first.astype(int)], 1.0, -1.0)
+    rising = np.maximum.accumulate(np.cumsum(np.concatenate([[0.0], tool_rate])))
+    centre = np.interp(at, samples, rising) + way * (angle - np.interp(at, samples, motion.tool_angle))
+    low = np.clip(np.interp(centre - REACH, rising, samples), first, last)
+    high = np.clip(np.interp(centre + REACH, rising, samples), first, last)
+    a = np.minimum(np.floor(low), len(samples) - 2).astype(int)
+    b = np.minimum(np.maximum(np.ceil(high).astype(int), a + 1), len(samples) - 1)
+    path = np.concatenate([[0.0], np.cumsum(speed)])
+    travel = path[b] - path[a]
+    # the edge's slowest crossing is at the innermost radius that still cuts
+    inner = max(cutter.profile.root, 0.5 * cutter.radius)
+    moving = tool_rate > 0
+    across = np.where(moving, np.maximum(inner * tool_rate - speed, 0.0), np.nan)
+    jump = stock_radius * _jumps(motion.work_angle) + np.linalg.norm(_jumps(motion.centre), axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slant = speed / across
+        jump = jump + np.where(moving, slant, 0.0) * inner * _jumps(motion.tool_angle)
+        bounds = {
+            "slant": slant,
+            "turn": work_rate / across,
+            "jolt": jump / across,
+            "samples": 1.0 / across,
+        }
+    ends = motion.tool_angle[np.stack([first, last], axis=1).astype(int)]
+    return Passes(
+        at=at,
+        angle=angle,
+        shift=cutter.gash_shift[gash],
+        first=first,
+        last=last,
+        travel=travel,
+        run_angle=np.sort(ends, axis=1),
+        **{name: _window_max(values, a, b) for name, values in bounds.items()},
+    )
+
+
+def _jumps(values: Floats) -> Floats:
+    """Velocity jump at the end of each sample interval [per sample], (n - 1, ...)."""
+    rate = np.diff(values, axis=0)
+    return np.abs(np.diff(rate, axis=0, append=rate[-1:]))
+
+
+def _window_max(values: Floats, a: Ints, b: Ints) -> Floats:
+    """Largest of `values[a:b]` for each window; undefined samples do not count."""
+    table = [np.nan_to_num(values, nan=0.0, posinf=np.inf)]
+    while 2 ** len(table) <= int(np.max(b - a, initial=1)):
+        step = 2 ** (len(table) - 1)
+        table.append(np.maximum(table[-1][:-step], table[-1][step:]))
+    level = np.floor(np.log2(b - a)).astype(int)
+    out = np.empty(len(a))
+    for k, row in enumerate(table):
+        here = level == k
+        out[here] = np.maximum(row[a[here]], row[b[here] - 2**k])
+    return out
+
+
+def _engaged(
+    passes: Passes, cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]
+) -> Passes:
+    """Drop the passes whose tool stays clear of the stock cylinder."""
+    samples = np.arange(len(motion.tool_angle), dtype=float)
+    centre = np.stack([np.interp(passes.at, samples, motion.centre[:, k]) for k in range(3)], axis=1)
+    reach = cutter.radius + passes.travel
+    middle = np.array([0.0, 0.0, 0.5 * (stock_z[0] + stock_z[1])])
+    half = 0.5 * (stock_z[1] - stock_z[0])
+    axis = motion.basis[2]
+    offset = middle - centre
+    if abs(axis[2]) > 0.9:  # tool axis along the work axis: distance between two parallel axes
+        clear = np.hypot(offset[:, 0], offset[:, 1]) - stock_radius > reach + half * math.hypot(*axis[:2])
+    else:
+        # the tool as a cylinder about a line across the work: z band and x distance are both needed
+        slope = np.abs(axis[2]) * 2.0 * stock_radius
+        clear = (np.abs(offset[:, 2]) - half > reach + slope) | (np.abs(offset[:, 0]) - stock_radius > reach)
+    keep = ~clear
+    if np.isinf(passes.slant[keep]).any():
+        raise PartError(
+            "the stock moves past the cutting edges faster than the tool turns; such a cut is not modelled",
+            remedy="check S, the ratio T:L or P:Q, and the feed",
+        )
+    return Passes(**{name: getattr(passes, name)[keep] for name in Passes.__dataclass_fields__})

@@ -1,0 +1,118 @@
+"""The blank, and what manifold3d leaves of it."""
+
+import math
+from dataclasses import dataclass
+
+import manifold3d
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutting.dual import Surface
+from twin.errors import PartError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CHORD = 2.5e-4
+"""How far the blank's facets may lie inside its circles [mm]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Blank:
+    """A turned blank from z = 0 (front face) to z = −length."""
+
+    diameter_mm: float
+    length_mm: float
+    bore_mm: float = 0.0
+
+    @property
+    def radius(self) -> float:
+        """Outer radius [mm]."""
+        return self.diameter_mm / 2.0
+
+    @property
+    def z_range(self) -> tuple[float, float]:
+        """Lowest and highest z [mm]."""
+        return -self.length_mm, 0.0
+
+    def outline(self) -> Floats:
+        """(n, 2) of (r, z), counter-clockwise; r = 0 where it reaches the axis."""
+        low, high = self.z_range
+        inner = self.bore_mm / 2.0
+        return np.array([[inner, low], [self.radius, low], [self.radius, high], [inner, high]])
+
+    def solid(self) -> manifold3d.Manifold:
+        """The blank with facets within CHORD of its circles, vertices on them."""
+        segments = math.ceil(math.pi / math.acos(1.0 - CHORD / self.radius))
+        return lathe(self.outline(), segments)
+
+
+def lathe(outline: Floats, segments: int) -> manifold3d.Manifold:
+    """Turn a closed outline (n, 2) of (r, z) about the z axis; points with r = 0 lie on the axis."""
+    angle = 2.0 * math.pi * np.arange(segments) / segments
+    cos, sin = np.cos(angle), np.sin(angle)
+    rings: list[Ints] = []
+    points: list[Floats] = []
+    count = 0
+    for r, z in outline:
+        if r > 0:
+            points.append(np.stack([r * cos, r * sin, np.full(segments, z)], axis=1))
+            rings.append(count + np.arange(segments))
+            count += segments
+        else:
+            points.append(np.array([[0.0, 0.0, z]]))
+            rings.append(np.full(segments, count))
+            count += 1
+    faces = []
+    for a, b in zip(rings, [*rings[1:], rings[0]], strict=True):
+        a1, b1 = np.roll(a, -1), np.roll(b, -1)
+        faces += [np.stack([a, a1, b1], axis=1), np.stack([a, b1, b], axis=1)]
+    triangles = np.concatenate(faces)
+    flat = (
+        (triangles[:, 0] == triangles[:, 1])
+        | (triangles[:, 1] == triangles[:, 2])
+        | (triangles[:, 0] == triangles[:, 2])
+    )
+    return solid(np.concatenate(points), triangles[~flat])
+
+
+def solid(vertices: Floats, faces: Ints) -> manifold3d.Manifold:
+    """A manifold3d solid in double precision. Raises PartError where the mesh is no closed 2-manifold."""
+    made = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64)))
+    if made.status() != manifold3d.Error.NoError:
+        raise PartError(f"the cut surface is no closed solid ({made.status().name})")
+    return made
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Remains:
+    """What is left of the blank."""
+
+    vertices: Floats
+    """(n, 3) [mm], part frame"""
+    faces: Ints
+    """(m, 3) counter-clockwise seen from outside"""
+    volume_mm3: float
+    blank_volume_mm3: float
+    loose_volumes_mm3: tuple[float, ...]
+    """of the pieces that the cut severed, largest first"""
+    genus: int
+
+
+def subtract(blank: Blank, surface: Surface | None) -> Remains:
+    """One boolean: the blank without the removed solid. The largest piece is the part."""
+    whole = blank.solid()
+    left = whole if surface is None else whole - solid(surface.vertices, surface.faces)
+    if left.is_empty():
+        raise PartError("nothing is left of the blank", remedy="the cut removes all of it; check X and the tool")
+    pieces = sorted(left.decompose(), key=lambda piece: -piece.volume())
+    part = pieces[0]
+    mesh = part.to_mesh64()
+    return Remains(
+        vertices=np.array(mesh.vert_properties[:, :3]),
+        faces=np.array(mesh.tri_verts, dtype=np.int64),
+        volume_mm3=part.volume(),
+        blank_volume_mm3=whole.volume(),
+        loose_volumes_mm3=tuple(piece.volume() for piece in pieces[1:]),
+        genus=part.genus(),
+    )

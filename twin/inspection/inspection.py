@@ -1,0 +1,133 @@
+"""One inspection from mesh to verdict."""
+
+from numpy.typing import ArrayLike
+
+from twin.errors import InputError, PartError
+from twin.inspection.gear import find_gear, measure_gear
+from twin.inspection.involute import geometry
+from twin.inspection.judge import FLANK_LIMIT, judge_gear, judge_polygon, name_of, unlike
+from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
+from twin.inspection.polygon import measure_polygon
+from twin.inspection.recognise import MOST_SIDES, Form, Outline, recognise
+from twin.inspection.result import GearResult, Inspection, Verdict
+from twin.inspection.solid import Solid, check_solid
+from twin.inspection.tolerances import CLASSES, across_flats_limits
+
+
+def inspect(vertices: ArrayLike, faces: ArrayLike, nominal: Nominal | None = None) -> Inspection:
+    """Recognise and measure a part.
+
+    Args:
+        vertices: (n, 3) [mm] in the part frame: work axis = Z, +X = C0.
+        faces: (m, 3) vertex indices of a closed 2-manifold.
+        nominal: what the part should be; None: only what is found, not judged.
+
+    Raises:
+        InputError: the mesh is no closed 2-manifold of finite numbers, or the nominal is impossible.
+
+    """
+    _check_nominal(nominal)
+    solid = check_solid(vertices, faces)
+    outline = recognise(solid)
+    if outline.form is Form.GEAR and not isinstance(nominal, PolygonNominal):
+        result = _inspect_gear(solid, outline, nominal)
+    elif outline.form is Form.POLYGON and not isinstance(nominal, GearNominal):
+        result = _inspect_polygon(solid, outline, nominal)
+    else:
+        result = _nothing(_unexpected(outline), nominal)
+    return result
+
+
+def _check_nominal(nominal: Nominal | None) -> None:
+    """An impossible nominal is refused before anything is measured."""
+    if isinstance(nominal, GearNominal):
+        geometry(nominal)
+        if nominal.accuracy_class is not None and nominal.accuracy_class not in CLASSES:
+            raise InputError(
+                f"nominal gear: accuracy_class is {nominal.accuracy_class}",
+                remedy=f"valid is {CLASSES[0]} to {CLASSES[-1]}",
+            )
+    elif isinstance(nominal, PolygonNominal):
+        across_flats_limits(nominal.across_flats_mm, nominal.tolerance)
+        if not 2 <= nominal.number_of_sides <= MOST_SIDES:
+            raise InputError(
+                f"nominal polygon: number_of_sides is {nominal.number_of_sides}",
+                remedy=f"valid is 2 to {MOST_SIDES}",
+            )
+
+
+def _inspect_gear(solid: Solid, outline: Outline, nominal: GearNominal | None) -> Inspection:
+    pressure = nominal.normal_pressure_angle_deg if nominal is not None else 20.0
+    try:
+        found = find_gear(solid, outline, pressure_deg=pressure)
+    except PartError as fault:
+        return _nothing(fault.text, nominal)
+    if found.straying > FLANK_LIMIT * found.module:
+        return _nothing(
+            f"{found.teeth} teeth stand about the axis, but their flanks stray {found.straying:.3f} mm "
+            "from one involute: the teeth are destroyed or of another kind",
+            nominal,
+        )
+    difference = unlike(found, nominal) if nominal is not None else ""
+    if difference:
+        return _nothing(f"{difference} (found: {found})", nominal)
+    gear, unmeasured = measure_gear(solid, outline, found, nominal)
+    ruined = _ruined(gear)
+    if ruined:
+        return _nothing(ruined, nominal)
+    gear, verdict, findings = judge_gear(gear, nominal, whole=outline.whole, unmeasured=unmeasured)
+    return Inspection(
+        gear=gear,
+        nominal=nominal,
+        verdict=verdict,
+        findings=(*findings, *_mended(solid)),
+        unmeasured=unmeasured,
+    )
+
+
+def _ruined(gear: GearResult) -> str:
+    """Say why these are no flanks; empty if they are."""
+    traces = [t for flank in (gear.left, gear.right) for t in (*flank.profile, *flank.helix)]
+    if not traces:
+        return "no tooth has a flank that can be traced: the teeth are destroyed"
+    worst = max(t.total_um for t in traces) / 1000
+    if worst > FLANK_LIMIT * gear.reference.normal_module_mm:
+        return f"flanks stray up to {worst:.3f} mm from the involute: the teeth are destroyed"
+    return ""
+
+
+def _inspect_polygon(solid: Solid, outline: Outline, nominal: PolygonNominal | None) -> Inspection:
+    if nominal is not None and outline.count != nominal.number_of_sides:
+        return _nothing(f"a polygon with {outline.count} sides was found, not {nominal.number_of_sides}", nominal)
+    try:
+        polygon, unmeasured = measure_polygon(solid, outline, nominal)
+    except PartError as fault:
+        return _nothing(fault.text, nominal)
+    verdict, findings = judge_polygon(polygon, nominal, whole=outline.whole)
+    return Inspection(
+        polygon=polygon,
+        nominal=nominal,
+        verdict=verdict,
+        findings=(*findings, *_mended(solid)),
+        unmeasured=unmeasured,
+    )
+
+
+def _unexpected(outline: Outline) -> str:
+    """Say what was found where something else was named."""
+    if outline.form is Form.NEITHER:
+        return outline.reason
+    what = "teeth" if outline.form is Form.GEAR else "flat sides"
+    return f"a part with {outline.count} {what} was found"
+
+
+def _nothing(reason: str, nominal: Nominal | None) -> Inspection:
+    """Give the result without figures: not the part named, or nothing that can be measured."""
+    if nominal is None:
+        return Inspection(verdict=Verdict.NOT_GRADED, reason=reason, findings=(reason,))
+    full = f"not {name_of(nominal)}: {reason}"
+    return Inspection(nominal=nominal, verdict=Verdict.OUT, reason=full, findings=(full,))
+
+
+def _mended(solid: Solid) -> tuple[str, ...]:
+    return ("the mesh came inside out and was turned",) if solid.turned else ()

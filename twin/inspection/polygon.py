@@ -1,0 +1,202 @@
+"""A polygon from its mesh: faces, widths, corners, bow and twist (inspection.md, section 2).
+
+Every face is read in several sections, each turned back by the twist found, as x over y: x along the face's
+outward direction, y along the face. Three widths across flats are told apart, because polygon turning bows
+its faces: at mid-face (S = 2(A - R) of geometry.md, section 3), between plain least-squares planes (about two
+thirds of the bow less on a convex part), and as the parallel jaws of a caliper read it (the middles of convex
+faces, the edges of concave ones).
+"""
+
+import math
+
+import numpy as np
+from numpy.polynomial import Legendre
+from scipy.spatial import ConvexHull
+
+from twin.errors import PartError
+from twin.inspection.nominal import PolygonNominal
+from twin.inspection.recognise import Outline
+from twin.inspection.result import Face, PolygonResult
+from twin.inspection.sections import outer_outlines, plane_segments
+from twin.inspection.sections import outline as chained_outline
+from twin.inspection.solid import Floats, Solid
+
+PLANES = 21
+"""sections read over the length"""
+END = 0.05
+"""part of the length left out at each end, where parts are chamfered"""
+POINTS = 201
+"""points read over the width of a face"""
+EDGE = 0.05
+"""part of the half width left out at each edge of a face, where a mesh rounds the corner; the fit spans it"""
+DEGREE = 6
+"""of the polynomial through a face"""
+ROCK = math.radians(5.0)
+"""how far a caliper's jaws may stand from a face's direction"""
+IRREGULAR = 0.2
+"""spread of the faces' distances, as part of their mean, from which there is no regular polygon"""
+UNTWISTED = 1e-3
+"""a twist below this [degrees/mm] has no hand"""
+
+
+def measure_polygon(
+    solid: Solid, outline: Outline, nominal: PolygonNominal | None
+) -> tuple[PolygonResult, dict[str, str]]:
+    """Measure a polygon.
+
+    Returns:
+        the result, and for every result key that cannot be measured the reason.
+
+    Raises:
+        PartError: faces at such different distances that there is no regular polygon.
+
+    """
+    sides = outline.count
+    heights = outline.low + (outline.high - outline.low) * np.linspace(END, 1 - END, PLANES)
+    segments = outer_outlines(plane_segments(solid, heights))
+    sections = [chained_outline(segments, plane) for plane in range(PLANES)]
+    directions = _directions(outline, heights)
+    faces = tuple(_face(outline, heights, sections, directions[:, k]) for k in range(sides))
+    corner_radii = np.array([_corner_radii(p, d) for p, d in zip(sections, directions, strict=True)])
+    across_corners = (corner_radii + np.roll(corner_radii, sides // 2, axis=1)).mean(axis=0)
+    unmeasured = {}
+    least = largest = None
+    if sides % 2 == 0:
+        widths = [
+            _caliper(p, d[: sides // 2]) for p, d in zip(sections, directions, strict=True)
+        ]
+        least, largest = float(np.min(widths)), float(np.max(widths))
+    else:
+        unmeasured["across_flats_caliper_mm"] = f"with {sides} sides no face stands opposite another"
+    found = np.array([f.direction_deg for f in faces])
+    mid = np.array([f.mid_distance_mm for f in faces])
+    if np.ptp(mid) > IRREGULAR * mid.mean():
+        raise PartError(
+            f"{sides} faces stand about the axis, but {mid.min():.3f} to {mid.max():.3f} mm from it: "
+            "no regular polygon"
+        )
+    twist = float(np.mean([f.twist_deg_per_mm for f in faces]))
+    result = PolygonResult(
+        number_of_sides=sides,
+        across_flats_mm=2 * float(mid.mean()),
+        across_flats_planes_mm=2 * float(np.mean([f.distance_mm for f in faces])),
+        across_flats_caliper_mm=largest,
+        across_flats_caliper_least_mm=least,
+        across_corners_mm=float(across_corners.mean()),
+        across_corners_least_mm=float(across_corners.min()),
+        bow_um=float(np.mean([f.bow_um for f in faces])),
+        flatness_um=max(f.flatness_um for f in faces),
+        twist_deg_per_mm=twist,
+        hand="none" if abs(twist) < UNTWISTED else "right" if twist > 0 else "left",
+        concentricity_um=2000 * _off_axis(np.radians(found), mid),
+        angles_deg=np.mod(np.roll(found, -1) - found, 360.0),
+        faces=faces,
+        range_mm=(outline.low, outline.high),
+        section=sections[PLANES // 2],
+        reference=nominal,
+    )
+    return result, unmeasured
+
+
+def _directions(outline: Outline, heights: Floats) -> Floats:
+    """Return the faces' outward directions [rad], (planes, sides), from the face nearest C0 on."""
+    pitch = 2 * math.pi / outline.count
+    first = outline.phase + pitch / 2
+    first -= pitch * round(first / pitch)
+    turn = outline.twist * (heights - outline.middle)
+    return first + turn[:, None] + pitch * np.arange(outline.count)
+
+
+def _face(outline: Outline, heights: Floats, sections: list[Floats], direction: Floats) -> Face:
+    """Fit one face over all sections: a polynomial across, a tilt and the remaining twist along."""
+    pitch = 2 * math.pi / outline.count
+    views = [_view(p, d, pitch) for p, d in zip(sections, direction, strict=True)]
+    ends = np.median([_edges(v, 0.01 * outline.depth) for v in views], axis=0)
+    y = np.linspace(*((1 - EDGE) * ends[:, 0]), POINTS)
+    x = np.array([np.interp(y, v[:, 1], v[:, 0]) for v in views])
+    width = float(np.abs(ends[:, 0]).max())
+    level = np.polynomial.legendre.legvander(y / width, DEGREE)
+    along, across = np.broadcast_arrays((heights - outline.middle)[:, None], y)
+    columns = [np.broadcast_to(c, x.shape).ravel() for c in level.T]
+    design = np.column_stack([*columns, along.ravel(), (along * across).ravel()])
+    solution = np.linalg.lstsq(design, x.ravel(), rcond=None)[0]
+    profile = Legendre(solution[: DEGREE + 1], domain=[-width, width])
+    tilt, rest_of_twist = solution[DEGREE + 1 :]
+    left, right = (_meet(profile, math.copysign(pitch / 2, y_end), r_end, outline) for y_end, r_end in ends)
+    whole = np.linspace(left, right, POINTS)
+    slope, distance = np.polyfit(whole, profile(whole), 1)
+    flat = distance + slope * across + tilt * along + rest_of_twist * along * across
+    rest = np.concatenate([(x - flat).ravel(), profile(whole) - distance - slope * whole])
+    at_left, at_right = profile(left), profile(right)
+    chord = (at_left * right - at_right * left) / (right - left)
+    return Face(
+        direction_deg=math.degrees(np.interp(outline.middle, heights, direction) - math.atan(slope)),
+        distance_mm=float(distance * math.cos(math.atan(slope))),
+        mid_distance_mm=float(profile(0.0)),
+        bow_um=1000 * float(profile(0.0) - chord),
+        flatness_um=1000 * float(np.ptp(rest)),
+        twist_deg_per_mm=math.degrees(outline.twist - rest_of_twist),
+    )
+
+
+def _view(points: Floats, direction: float, pitch: float) -> Floats:
+    """Return the part (n, 2) of an outline that faces `direction`, turned so that this is x, by rising y."""
+    cos, sin = math.cos(direction), math.sin(direction)
+    turned = points @ np.array([[cos, -sin], [sin, cos]])
+    near = np.abs(np.arctan2(turned[:, 1], turned[:, 0])) <= 0.5 * pitch
+    return turned[near][np.argsort(turned[near, 1])]
+
+
+def _edges(view: Floats, margin: float) -> Floats:
+    """Return y and radius of a face's two ends, ((y, r), (y, r)): where its radius stops growing."""
+    radius = np.hypot(*view.T)
+    ends = []
+    for sign in (-1, 1):
+        side = sign * view[:, 1] >= 0
+        y, r = view[side, 1][::sign], radius[side][::sign]
+        beyond = int(np.argmax(r >= r.max() - margin))
+        ends.append((y[beyond], r.max()))
+    return np.array(ends)
+
+
+def _meet(profile: Legendre, half_pitch: float, radius: float, outline: Outline) -> float:
+    """Return y where a face ends: at its neighbour, or before it at the blank's own circle."""
+    reach = 1.2 * float(profile.domain[1])  # the fit says nothing far beyond the points it is made of
+    y = 0.0
+    for _ in range(20):
+        y = float(np.clip(math.tan(half_pitch) * profile(y), -reach, reach))
+    if math.hypot(y, float(profile(y))) <= radius + 0.02 * outline.depth:
+        return y
+    for _ in range(20):
+        y = math.copysign(math.sqrt(max(radius**2 - float(profile(y)) ** 2, 0.0)), half_pitch)
+    return y
+
+
+def _corner_radii(points: Floats, directions: Floats) -> Floats:
+    """Return the largest radius (sides,) between each face and the next [mm]."""
+    pitch = 2 * math.pi / len(directions)
+    angle = np.arctan2(points[:, 1], points[:, 0]) - directions[0]
+    largest = np.zeros(len(directions))
+    np.maximum.at(largest, np.floor(angle / pitch).astype(np.int64) % len(directions), np.hypot(*points.T))
+    return largest
+
+
+def _caliper(points: Floats, directions: Floats) -> list[float]:
+    """Return the width [mm] parallel jaws read near each direction: least where they lie on an edge of the hull."""
+    hull = ConvexHull(points)
+    corners = points[hull.vertices]
+    normals = hull.equations[:, :2]
+    widths = -hull.equations[:, 2] - (corners @ normals.T).min(axis=0)
+    angle = np.arctan2(normals[:, 1], normals[:, 0])
+    readings = []
+    for direction in directions:
+        # either jaw may be the one that lies flat
+        away = np.abs(np.mod(angle - direction + math.pi / 2, math.pi) - math.pi / 2)
+        readings.append(float(widths[away <= max(ROCK, float(away.min()))].min()))
+    return readings
+
+
+def _off_axis(directions: Floats, distances: Floats) -> float:
+    """Return how far from the work axis [mm] the middle of all faces lies."""
+    design = np.column_stack([np.ones_like(directions), np.cos(directions), np.sin(directions)])
+    return float(np.hypot(*np.linalg.lstsq(design, distances, rcond=None)[0][1:]))

@@ -1,0 +1,171 @@
+"""What an inspection found. Lengths in mm, deviations in µm, angles in degrees; None = not measurable."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
+
+Floats = NDArray[np.float64]
+
+
+class Verdict(Enum):
+    """The judgement against the nominal."""
+
+    IN = "in"
+    OUT = "out"
+    NOT_GRADED = "not_graded"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trace:
+    """One deviation trace along one flank, normal to it in the transverse plane."""
+
+    tooth: int
+    """from 1, clockwise from the one nearest C0"""
+    position: Floats
+    """(m,) roll length [mm] of a profile trace, z [mm] of a helix trace"""
+    deviation_um: Floats
+    """(m,) + = material outside the nominal flank"""
+    evaluation: tuple[float, float]
+    """evaluated range of `position`"""
+    slope_um: float
+    """rise of the mean line over the evaluated range: + = material towards the tip, + = larger |helix angle|
+    (right-hand on a spur gear)"""
+    form_um: float
+    """band along the mean line"""
+    total_um: float
+    """range of the deviation"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flank:
+    """All left or all right flanks of a gear. Slopes are signed means, the others the largest."""
+
+    profile: tuple[Trace, ...]
+    helix: tuple[Trace, ...]
+    pitch_um: Floats
+    """(z,) single pitch deviation along the measuring circle, from each tooth to the next; NaN: no such flank"""
+    cumulative_um: Floats
+    """(z,) place of each flank against tooth 1, + = further on in the sense of numbering"""
+    profile_slope_um: float | None
+    profile_form_um: float | None
+    profile_total_um: float | None
+    helix_slope_um: float | None
+    helix_form_um: float | None
+    helix_total_um: float | None
+    single_pitch_um: float | None
+    cumulative_pitch_um: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearResult:
+    """A gear as found, and against its nominal."""
+
+    number_of_teeth: int
+    normal_module_mm: float
+    helix_angle_deg: float
+    hand: str
+    """"spur" | "right" | "left" """
+    lead_mm: float | None
+    """None for a spur gear"""
+    profile_shift: float
+    """x of the tooth thickness found, for the module found"""
+    tip_diameter_mm: float
+    root_diameter_mm: float
+    span_teeth: int | None
+    span_mm: float | None
+    left: Flank
+    right: Flank
+    reference: GearNominal
+    """what the traces are measured against: the given nominal, or the best fit where none was given"""
+    profile_range_mm: tuple[float, float]
+    """diameters between which profiles are evaluated"""
+    teeth_range_mm: tuple[float, float]
+    """z between which the teeth have their full depth"""
+    measuring_plane_mm: float
+    """z of profile and pitch measurement"""
+    phase_deg: float
+    """angle of tooth 1's centre in that plane"""
+    accuracy_class: dict[str, int | None] = field(default_factory=dict)
+    """class reached per item and "overall"; None = worse than 11 or outside the standard's range"""
+    tolerances_um: dict[str, float] = field(default_factory=dict)
+    """per item, of the nominal's class"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Face:
+    """One face of a polygon, from its least-squares plane."""
+
+    direction_deg: float
+    """of its outward normal at mid-length, from the part's +X counter-clockwise"""
+    distance_mm: float
+    """of the least-squares plane from the axis"""
+    mid_distance_mm: float
+    """of the middle of the face from the axis"""
+    bow_um: float
+    """+ convex"""
+    flatness_um: float
+    twist_deg_per_mm: float
+    """+ right-hand"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PolygonResult:
+    """A polygon as found."""
+
+    number_of_sides: int
+    across_flats_mm: float
+    """mean width at mid-face: between opposed least-squares planes, plus what their faces bow out at the middle"""
+    across_flats_planes_mm: float
+    """mean width between opposed plain least-squares planes"""
+    across_flats_caliper_mm: float | None
+    """largest width as a caliper's parallel jaws read it; None where no face stands opposite another"""
+    across_flats_caliper_least_mm: float | None
+    """smallest width so read"""
+    across_corners_mm: float
+    """mean"""
+    across_corners_least_mm: float
+    """smallest"""
+    bow_um: float
+    """mean height of the middle of the faces over the chord from edge to edge, + convex"""
+    flatness_um: float
+    """largest of the faces, about their least-squares planes, twist taken out"""
+    twist_deg_per_mm: float
+    """+ right-hand"""
+    hand: str
+    """"none" | "right" | "left" """
+    concentricity_um: float
+    """diameter of the zone about the work axis that holds the axis of the faces"""
+    angles_deg: Floats
+    """(n,) between each face and the next"""
+    faces: tuple[Face, ...]
+    """counter-clockwise from the one nearest C0"""
+    range_mm: tuple[float, float]
+    """z between which the faces have their full depth"""
+    section: Floats
+    """(m, 2) outline at mid-length [mm]"""
+    reference: PolygonNominal | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inspection:
+    """The result of one inspection: a gear, a polygon, or a reason why it is neither."""
+
+    gear: GearResult | None = None
+    polygon: PolygonResult | None = None
+    nominal: Nominal | None = None
+    verdict: Verdict = Verdict.NOT_GRADED
+    findings: tuple[str, ...] = ()
+    """sentences: why the verdict is what it is, most important first"""
+    reason: str = ""
+    """why kind is null, where it is"""
+    unmeasured: dict[str, str] = field(default_factory=dict)
+    """result key -> why it is null"""
+
+    @property
+    def kind(self) -> str | None:
+        """`gear`, `polygon` or None."""
+        return "gear" if self.gear else "polygon" if self.polygon else None

@@ -1,0 +1,210 @@
+"""Exact sections of a mesh: by planes z = const, and of those by circles r = const.
+
+Every figure of an inspection is read from points that lie on the mesh itself: where a face crosses a plane,
+and where that crossing crosses a circle about the work axis. A point on a plane or circle counts as above or
+outside it, so that closed meshes give closed outlines and crossings come in pairs.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from twin.inspection.solid import Floats, Ints, Solid
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Segments:
+    """The crossings of faces with parallel planes; walking from start to end, material is on the left."""
+
+    heights: Floats
+    """(k,) z of the planes [mm], ascending"""
+    plane: Ints
+    """(n,) index into `heights`"""
+    start: Floats
+    """(n, 2) [mm]"""
+    end: Floats
+    """(n, 2) [mm]"""
+    start_node: Ints
+    """(n,) number of the mesh edge crossed at the start, unique within its plane"""
+    end_node: Ints
+    """(n,)"""
+
+    def select(self, mask: np.ndarray) -> "Segments":
+        """Return the segments where `mask` (n,) is true."""
+        return Segments(
+            heights=self.heights,
+            plane=self.plane[mask],
+            start=self.start[mask],
+            end=self.end[mask],
+            start_node=self.start_node[mask],
+            end_node=self.end_node[mask],
+        )
+
+
+    def scaled(self, factor: Floats) -> "Segments":
+        """Return the sections scaled about the axis, `factor` (k,) for each plane."""
+        each = factor[self.plane, None]
+        return Segments(
+            heights=self.heights,
+            plane=self.plane,
+            start=self.start * each,
+            end=self.end * each,
+            start_node=self.start_node,
+            end_node=self.end_node,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Crossings:
+    """Where sections cross circles about the axis, sorted by plane, circle and angle."""
+
+    plane: Ints
+    """(n,) index of the plane"""
+    circle: Ints
+    """(n,) index of the radius"""
+    angle: Floats
+    """(n,) [rad], -pi to pi"""
+    left: np.ndarray
+    """(n,) bool: a left flank (material towards -angle); else a right flank"""
+
+
+def plane_segments(solid: Solid, heights: Floats, *, faces: Ints | None = None) -> Segments:
+    """Cut a solid by the planes z = heights (k,), ascending; `faces` (m, 3) restricts it to some faces."""
+    faces = solid.faces if faces is None else faces
+    z = solid.vertices[:, 2]
+    first, count = _spans(*_face_limits(z, faces), heights)
+    face, plane = _expand(first, count)
+    h = heights[plane]
+    a, b, c = (faces[face, i] for i in range(3))
+    above_a, above_b, above_c = (z[corner] >= h for corner in (a, b, c))
+    # one corner lies alone on its side of the plane; walk round the face from it
+    lone_a, lone_b = above_b == above_c, above_a == above_c
+    apex = np.where(lone_a, a, np.where(lone_b, b, c))
+    following = np.where(lone_a, b, np.where(lone_b, c, a))
+    preceding = np.where(lone_a, c, np.where(lone_b, a, b))
+    lone_above = np.where(lone_a, above_a, np.where(lone_b, above_b, above_c))
+    from_corner = np.where(lone_above, following, preceding)
+    to_corner = np.where(lone_above, preceding, following)
+    start, start_node = _cross_edge(solid.vertices, apex, from_corner, h)
+    end, end_node = _cross_edge(solid.vertices, apex, to_corner, h)
+    return Segments(
+        heights=heights, plane=plane, start=start, end=end, start_node=start_node, end_node=end_node
+    )
+
+
+def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
+    """Cross sections with circles of `radii` (m,) [mm], ascending; exact on each chord."""
+    r_start = np.hypot(*segments.start.T)
+    r_end = np.hypot(*segments.end.T)
+    first, count = _spans(np.minimum(r_start, r_end), np.maximum(r_start, r_end), radii)
+    segment, circle = _expand(first, count)
+    p = segments.start[segment]
+    d = segments.end[segment] - p
+    a = np.einsum("ij,ij->i", d, d)
+    b = np.einsum("ij,ij->i", p, d)
+    c = np.einsum("ij,ij->i", p, p) - radii[circle] ** 2
+    left = r_start[segment] > r_end[segment]
+    root = np.sqrt(np.maximum(b * b - a * c, 0.0))
+    t = np.clip((np.where(left, -root, root) - b) / a, 0.0, 1.0)
+    point = p + t[:, None] * d
+    angle = np.arctan2(point[:, 1], point[:, 0])
+    order = np.lexsort((angle, circle, segments.plane[segment]))
+    return Crossings(
+        plane=segments.plane[segment][order], circle=circle[order], angle=angle[order], left=left[order]
+    )
+
+
+def faces_at_height(solid: Solid, height: float) -> Ints:
+    """Return the faces (m, 3) that meet the plane z = height [mm]."""
+    low, high = _face_limits(solid.vertices[:, 2], solid.faces)
+    return solid.faces[(low < height) & (high >= height)]
+
+
+def faces_at_radius(solid: Solid, radius: float, *, faces: Ints | None = None) -> Ints:
+    """Return the faces (m, 3), of `faces` or of all, that can meet the cylinder of that radius [mm]."""
+    faces = solid.faces if faces is None else faces
+    x, y = solid.vertices[:, 0], solid.vertices[:, 1]
+    low, high = _face_limits(x * x + y * y, faces)
+    a, b, c = (faces[:, i] for i in range(3))
+    longest = np.maximum.reduce([(x[p] - x[q]) ** 2 + (y[p] - y[q]) ** 2 for p, q in ((a, b), (b, c), (c, a))])
+    # a chord of length l between points outside R comes no nearer than sqrt(R^2 - l^2/4)
+    return faces[(low - longest / 4 <= radius**2) & (high >= radius**2)]
+
+
+def outer_outlines(segments: Segments) -> Segments:
+    """Keep, in every plane, the closed outline of largest area: bores and loose pieces go."""
+    if len(segments.plane) == 0:
+        return segments
+    n, planes = len(segments.plane), len(segments.heights)
+    # every node is the start of one segment and the end of another
+    by_start = np.argsort(segments.start_node * planes + segments.plane)
+    by_end = np.argsort(segments.end_node * planes + segments.plane)
+    graph = coo_array((np.ones(n, dtype=np.int8), (by_end, by_start)), shape=(n, n))
+    loops, loop = connected_components(graph, directed=False)
+    area = np.bincount(loop, weights=_cross(segments.start, segments.end), minlength=loops)
+    plane_of = np.zeros(loops, dtype=np.int64)
+    plane_of[loop] = segments.plane
+    largest = np.full(len(segments.heights), -np.inf)
+    np.maximum.at(largest, plane_of, area)
+    return segments.select(area[loop] == largest[segments.plane])
+
+
+def outline(segments: Segments, plane: int) -> Floats:
+    """Chain the one closed outline of a plane into (n, 2) points [mm], material on the left."""
+    chosen = segments.select(segments.plane == plane)
+    following = dict(zip(chosen.start_node.tolist(), chosen.end_node.tolist(), strict=True))
+    row = {node: i for i, node in enumerate(chosen.start_node.tolist())}
+    node = int(chosen.start_node[0])
+    rows = []
+    for _ in range(len(row)):
+        rows.append(row[node])
+        node = following[node]
+    return chosen.start[rows]
+
+
+def radial_limits(segments: Segments) -> tuple[Floats, Floats]:
+    """Return smallest and largest radius [mm] of the outlines in each plane, (k,) each; NaN for empty planes."""
+    p, d = segments.start, segments.end - segments.start
+    square = np.maximum(np.einsum("ij,ij->i", d, d), np.finfo(np.float64).tiny)
+    foot = p + np.clip(-np.einsum("ij,ij->i", p, d) / square, 0.0, 1.0)[:, None] * d
+    low = np.full(len(segments.heights), np.inf)
+    high = np.full(len(segments.heights), -np.inf)
+    np.minimum.at(low, segments.plane, np.hypot(*foot.T))
+    np.maximum.at(high, segments.plane, np.hypot(*p.T))
+    empty = ~np.isfinite(low)
+    low[empty] = high[empty] = np.nan
+    return low, high
+
+
+def _face_limits(values: Floats, faces: Ints) -> tuple[Floats, Floats]:
+    """Return least and largest of a value at the corners of each face."""
+    a, b, c = (values[faces[:, i]] for i in range(3))
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+
+
+def _spans(low: Floats, high: Floats, levels: Floats) -> tuple[Ints, Ints]:
+    """Return for each interval low < level <= high the first level's index and how many there are."""
+    first = np.searchsorted(levels, low, side="right")
+    last = np.searchsorted(levels, high, side="right")
+    return first, last - first
+
+
+def _expand(first: Ints, count: Ints) -> tuple[Ints, Ints]:
+    """List all pairs (item, level) of the spans."""
+    item = np.repeat(np.arange(len(count)), count)
+    offset = np.arange(len(item)) - np.repeat(np.cumsum(count) - count, count)
+    return item, first[item] + offset
+
+
+def _cross_edge(vertices: Floats, one: Ints, other: Ints, z: Floats) -> tuple[Floats, Ints]:
+    """Cross mesh edges with z; the same from both of an edge's faces, to the last bit."""
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    a, b = vertices[low], vertices[high]
+    t = (z - a[:, 2]) / (b[:, 2] - a[:, 2])
+    return a[:, :2] + t[:, None] * (b[:, :2] - a[:, :2]), low * len(vertices) + high
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

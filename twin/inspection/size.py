@@ -1,0 +1,74 @@
+"""Sizes of a gear: tip and root diameter, and the span as parallel jaws feel it."""
+
+import math
+
+import numpy as np
+
+from twin.inspection.flanks import Placed
+from twin.inspection.solid import Floats, Solid
+
+
+def tip_and_root_radii(solid: Solid, placed: Placed, *, root_radius: float) -> tuple[Floats, Floats]:
+    """Return the largest radius of every tooth and the smallest of every gap, (z,) each [mm].
+
+    `root_radius` [mm] is about where the gaps end: what lies well inside, a bore, is left out.
+    """
+    x, y, z = solid.vertices.T
+    radius = np.hypot(x, y)
+    chosen = (z >= placed.low) & (z <= placed.high) & (radius >= 0.95 * root_radius)
+    angle = placed.turned_back(np.arctan2(y[chosen], x[chosen]), z[chosen])
+    radius = radius[chosen]
+    teeth = placed.gear.teeth
+    tips = np.full(teeth, -np.inf)
+    np.maximum.at(tips, placed.tooth(angle)[0], radius)
+    gaps = np.full(teeth, np.inf)
+    np.minimum.at(gaps, placed.tooth(angle + math.pi / teeth)[0], radius)
+    return tips, gaps
+
+
+def measure_span(solid: Solid, placed: Placed, k: int, *, tip_radius: float) -> tuple[float | None, str]:
+    """Return the mean span [mm] over every group of k teeth, or None and the reason.
+
+    Two parallel planes, inclined by the base helix angle and square to the middle of the group, are closed
+    on the outer flanks until they touch.
+    """
+    gear = placed.gear
+    if k > gear.teeth / 2:
+        return None, f"a span over {k} of {gear.teeth} teeth does not lie between parallel jaws"
+    needed = gear.span(k) * math.sin(abs(gear.base_helix))
+    if placed.high - placed.low <= needed:
+        return None, f"the span over {k} teeth of this helix needs a face wider than {needed:.2f} mm"
+    x, y, z = solid.vertices.T
+    radius = np.hypot(x, y)
+    low = gear.form_diameter / 2
+    chosen = (radius >= low) & (radius <= tip_radius) & (z >= placed.low) & (z <= placed.high)
+    points, radius = solid.vertices[chosen], radius[chosen]
+    tooth, offset = placed.tooth(placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2]))
+    # sorted by flank: the right flank of a tooth, then its left one
+    flank = 2 * tooth + (offset > 0)
+    order = np.argsort(flank, kind="stable")
+    points, radius = points[order], radius[order]
+    ends = np.searchsorted(flank[order], np.arange(2 * gear.teeth + 1))
+    spans = []
+    for first in range(gear.teeth):
+        middle = placed.phase - 2 * math.pi * (first + (k - 1) / 2) / gear.teeth + math.pi / 2
+        normal = np.array(
+            [
+                math.cos(gear.base_helix) * math.cos(middle),
+                math.cos(gear.base_helix) * math.sin(middle),
+                -math.sin(gear.base_helix),
+            ]
+        )
+        last = (first + k - 1) % gear.teeth
+        sides = (slice(*ends[2 * first + 1 : 2 * first + 3]), slice(*ends[2 * last : 2 * last + 2]))
+        span = 0.0
+        for side, sense in zip(sides, (1.0, -1.0), strict=True):
+            reach = sense * (points[side] @ normal)
+            if len(reach) == 0:
+                return None, f"tooth {first + 1} or {last + 1} has no flank to touch"
+            touch = int(np.argmax(reach))
+            if radius[side][touch] > tip_radius - 0.02 * gear.module:
+                return None, f"jaws over {k} teeth touch the tips, not the flanks"
+            span += float(reach[touch])
+        spans.append(span)
+    return float(np.mean(spans)), ""

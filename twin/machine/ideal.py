@@ -1,0 +1,24 @@
+"""The machine whose axes follow their setpoints exactly."""
+
+from controller.clock import Chunk, Feedback, Load
+from twin.machine.following import couple, require_chunk
+from twin.machine.watching import Watcher
+
+
+class IdealMachine:
+    """actual = setpoint, couplings applied; forces move nothing. `axes` = number of system axes."""
+
+    def __init__(self, axes: int) -> None:
+        self._axes = axes
+        self._tick = 0
+        self._watcher = Watcher()
+
+    def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:  # noqa: ARG002 - no force moves it
+        """Move along the chunk; every watched condition holds at its first tick."""
+        require_chunk(chunk, self._axes, self._tick)
+        watch = self._watcher.begin(chunk.watch)
+        ticks = chunk.ticks if watch is None else min(chunk.ticks, 1)
+        position = couple(chunk)[:ticks]
+        signals = self._watcher.end(ticks, reached=ticks > 0)
+        self._tick += ticks
+        return Feedback(ticks=ticks, setpoint=position, actual=position.copy(), signals=signals)

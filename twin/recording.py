@@ -1,0 +1,77 @@
+"""The recorded run: every axis over time, and where the tool was in the part's frame."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlockRef:
+    """A program block that moved something."""
+
+    file: str
+    line: int
+    """from 1"""
+    text: str
+    """the block as written"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recording:
+    """Axes over time in machine terms, and the tool in the part's frame.
+
+    The part frame turns with the work: its Z is the work axis, its origin the front face, and at work
+    angle 0 its +X points to the tool. Motion between two samples is linear in the axes.
+    """
+
+    time_s: Floats
+    """(n,) uniform but for compressed idle spans"""
+    axes: tuple[str, ...]
+    """axis letters, in the order of the columns below"""
+    setpoint: Floats
+    """(n, axes) slide travel [mm, X in radius] and unwrapped degrees, from machine zero"""
+    actual: Floats
+    """(n, axes)"""
+    block: NDArray[np.int32]
+    """(n,) index into `blocks`"""
+    blocks: tuple[BlockRef, ...]
+    tool: NDArray[np.int16]
+    """(n,) tool number, 0 = the mounted one"""
+    sync: NDArray[np.bool_]
+    """(n,) electronic gear box engaged"""
+    work_angle_deg: Floats
+    """(n,) of the work spindle, unwrapped, + counter-clockwise seen from +Z"""
+    tool_angle_deg: Floats
+    """(n,) of the tool about `tool_axis`, unwrapped; at 0 its first edge points along `tool_zero`"""
+    tool_centre_mm: Floats
+    """(n, 3) in the turning part frame"""
+    tool_axis: Floats
+    """(n, 3) unit vector in the turning part frame, right-hand positive sense of rotation"""
+    tool_zero: Floats
+    """(n, 3) unit vector in the turning part frame, direction of tool angle 0"""
+
+    def save(self, path: Path) -> None:
+        """Write `recording.npz`: per axis letter `setpoint_X`, `actual_X`, …; the rest under its own name."""
+        columns: dict[str, NDArray] = {}
+        for k, letter in enumerate(self.axes):
+            columns[f"setpoint_{letter}"] = self.setpoint[:, k]
+            columns[f"actual_{letter}"] = self.actual[:, k]
+        np.savez_compressed(
+            path,
+            time_s=self.time_s,
+            axes=np.array(self.axes),
+            block=self.block,
+            blocks=np.array([(b.file, str(b.line), b.text) for b in self.blocks], dtype=str).reshape(-1, 3),
+            tool=self.tool,
+            sync=self.sync,
+            work_angle_deg=self.work_angle_deg,
+            tool_angle_deg=self.tool_angle_deg,
+            tool_centre_mm=self.tool_centre_mm,
+            tool_axis=self.tool_axis,
+            tool_zero=self.tool_zero,
+            **columns,
+        )

@@ -1,0 +1,117 @@
+"""All that a report shows, as plain values: the caller fills it in, `write_report` only lays it out."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.inspection.result import Floats, Inspection
+from twin.recording import Recording
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """One line of a two-column table."""
+
+    label: str
+    value: str
+
+
+class Severity(Enum):
+    """How much a message weighs."""
+
+    ALARM = "alarm"
+    """stopped the program"""
+    WARNING = "warning"
+    """did not"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Message:
+    """An alarm or a warning with its place in the program."""
+
+    severity: Severity
+    number: str
+    """for example "PS0005" """
+    text: str
+    file: str = ""
+    line: int | None = None
+    """from 1"""
+    column: int | None = None
+    """from 1, in characters"""
+    found: str = ""
+    """what stood or happened there"""
+    remedy: str = ""
+    """what would have been valid"""
+
+    @property
+    def place(self) -> str:
+        """`file:line:column`, as far as known."""
+        return ":".join(str(part) for part in (self.file, self.line, self.column) if part not in ("", None))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """The cut part as a mesh in the part frame: Z = work axis, origin in the front face, material at z <= 0.
+
+    Raises ValueError where the arrays do not fit together.
+    """
+
+    vertices: Floats
+    """(n, 3) [mm], finite"""
+    faces: NDArray[np.integer]
+    """(m, 3) indices into `vertices`, counter-clockwise seen from outside"""
+    deviation_um: Floats
+    """(n,) + = material outside the nominal; NaN = not on a measured face"""
+
+    def __post_init__(self) -> None:
+        n = len(self.vertices)
+        if self.vertices.shape != (n, 3) or not np.isfinite(self.vertices).all():
+            raise ValueError(f"part vertices: expected finite (n, 3), got shape {self.vertices.shape}")
+        if self.faces.shape != (len(self.faces), 3):
+            raise ValueError(f"part faces: expected (m, 3), got shape {self.faces.shape}")
+        if len(self.faces) and (self.faces.min() < 0 or self.faces.max() >= n):
+            raise ValueError(f"part faces: indices must lie in 0 … {n - 1}")
+        if self.deviation_um.shape != (n,):
+            raise ValueError(f"part deviation_um: expected ({n},), got shape {self.deviation_um.shape}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Program:
+    """One NC program as the controller read it."""
+
+    name: str
+    """the file name that messages use"""
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """A picture made elsewhere, for example of the machine."""
+
+    caption: str
+    png: bytes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReportData:
+    """Everything on the page. What is left out is said to be missing, never drawn empty."""
+
+    title: str
+    """name of the job"""
+    job: tuple[Row, ...] = ()
+    """what was asked for: machine, work, tool, program"""
+    provenance: tuple[Row, ...] = ()
+    """versions, hashes of the inputs, chunking"""
+    timing: tuple[Row, ...] = ()
+    """where the time of the run went"""
+    recording: Recording | None = None
+    rotary_axes: frozenset[str] = frozenset()
+    """letters of the recording's axes that turn [deg]; the others slide [mm]"""
+    messages: tuple[Message, ...] = ()
+    """alarms and warnings, in the order in which they came"""
+    part: Part | None = None
+    inspection: Inspection = field(default_factory=Inspection)
+    programs: tuple[Program, ...] = ()
+    pictures: tuple[Picture, ...] = ()
