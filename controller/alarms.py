@@ -39,11 +39,12 @@ class AlarmEntry:
 
     @property
     def kind(self) -> AlarmClass:
-        """The class that the prefix of the number stands for."""
-        return _CLASS_OF_PREFIX[self.number[:2]]
+        """The class that the number or its prefix stands for."""
+        return _CLASS_OF.get(self.number) or _CLASS_OF[self.number[:2]]
 
 
-_CLASS_OF_PREFIX = {
+_CLASS_OF = {
+    "HT9013": AlarmClass.SERVO,
     "PS": AlarmClass.PROGRAM,
     "HT": AlarmClass.PROGRAM,
     "OT": AlarmClass.OVERTRAVEL,
@@ -61,7 +62,6 @@ PS0009 | IMPROPER NC-ADDRESS | an address of this machine
 PS0010 | IMPROPER G-CODE | a G code of this controller
 PS0011 | FEED ZERO (COMMAND) | F greater than 0 before or in the block
 PS0030 | ILLEGAL OFFSET NUMBER | offset numbers 00 to 99
-PS0046 | ILLEGAL REFERENCE RETURN COMMAND | P2, P3 or P4
 PS0060 | SEQUENCE NUMBER NOT FOUND | an N number of the program
 PS0076 | PROGRAM NOT FOUND | an O number of the file
 PS0077 | TOO MANY SUB,MACRO NESTING | at most 10 levels of M98
@@ -101,8 +101,8 @@ HT9009 | UNKNOWN M CODE | M00 to M05, M08, M09, M19, M30, M98, M99
 HT9010 | IMPROPER T CODE | T with tool and offset, as in T0101
 HT9011 | MAIN PROGRAM WITHOUT END | M30 at the end of the main program
 HT9012 | IMPROPER VALUE | a value in the range of the address
-HT9014 | FORBIDDEN WITH THE INCLINED AXIS | parameter 8200#0 = 0
 HT9013 | MACHINE ALARM | see the message of the machine
+HT9014 | FORBIDDEN WITH THE INCLINED AXIS | parameter 8200#0 = 0
 """
 
 _WARNINGS = """

@@ -59,7 +59,7 @@ class Chunk:
 
     first_tick: int
     setpoint: Floats
-    """(n, axes) [mm slide travel | deg unwrapped]"""
+    """(n, axes) [mm slide travel | deg unwrapped]; row k is due at the end of tick `first_tick` + k"""
     block: NDArray[np.int32]
     """(n,) index into `Controller.blocks`"""
     sync: NDArray[np.bool_]
@@ -107,4 +107,8 @@ class Machine(Protocol):
 
     def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:
         """Move along the chunk; stop early at a watch's trigger or an alarm."""
+        ...
+
+    def rest(self, ticks: int) -> None:
+        """Let `ticks` pass in which nothing moves; the axes stay where they are."""
         ...

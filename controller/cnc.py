@@ -31,14 +31,17 @@ class _Encoders:
     """The last rows of feedback, old to new."""
 
     actual: deque[Floats]
-    setpoint: Floats
+    setpoint: deque[Floats]
     tick_s: float
 
     def position(self, axis: int) -> float:
         return float(self.actual[-1][axis])
 
     def command(self, axis: int) -> float:
-        return float(self.setpoint[axis])
+        return float(self.setpoint[-1][axis])
+
+    def command_speed(self, axis: int) -> float:
+        return float(self.setpoint[-1][axis] - self.setpoint[0][axis]) / self.tick_s
 
     def speed(self, axis: int) -> float:
         span = (len(self.actual) - 1) * self.tick_s
@@ -76,7 +79,7 @@ class Controller:
         self._halted = False
         rows = max(1, round(FEED_PERIOD * self._rate)) + 1
         self._actual = deque([np.zeros(len(self.axes))] * rows, maxlen=rows)
-        self._setpoint = np.zeros(len(self.axes))
+        self._setpoint = deque([np.zeros(len(self.axes))] * 2, maxlen=2)
         self._told = 0
 
     @property
@@ -151,10 +154,8 @@ class Controller:
                 f"feedback of {feedback.ticks} ticks", remedy=f"at most {self._proposed} as proposed"
             )
         self._proposed = 0
-        if feedback.ticks:
-            for row in feedback.actual[-len(self._actual) :]:
-                self._actual.append(np.array(row))
-            self._setpoint = np.array(feedback.setpoint[-1])
+        self._actual.extend(np.array(feedback.actual[-len(self._actual) :]))
+        self._setpoint.extend(np.array(feedback.setpoint[-2:]))
         self._tick += feedback.ticks
         for one in feedback.alarms:
             number = one.number if one.number in ALARMS else "HT9013"
@@ -184,8 +185,8 @@ class Controller:
         """Pass `ticks` in which nothing moves, as if they had been proposed and committed."""
         if not 0 <= ticks <= (idle := self.idle_ticks()):
             raise ControllerError(f"skipping {ticks} ticks", remedy=f"at most the {idle} idle ones")
-        for _ in range(min(ticks, len(self._actual))):
-            self._actual.append(self._actual[-1])
+        for rows in (self._actual, self._setpoint):
+            rows.extend([rows[-1]] * min(ticks, len(rows)))
         self._tick += ticks
         self._proposed = 0
         self._motion.timeline.forget(self._tick / self._rate)

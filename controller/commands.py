@@ -60,7 +60,6 @@ class Couple:
     gear: GearBox
     phase: float = 0.0
     """R of G51.2: the master turns by so much first [deg]"""
-    span: Span
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

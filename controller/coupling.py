@@ -14,6 +14,7 @@ from controller.gearbox import GearBox, SyncKind, slave_travel
 from controller.inclined import cartesian_from_slides
 from controller.machine_data import MachineData
 from controller.registers import Registers
+from controller.segments import trapezoid
 from controller.spindles import Spindles
 from controller.timeline import Epoch, Timeline
 
@@ -27,6 +28,10 @@ class Sensor(Protocol):
 
     def command(self, axis: int) -> float:
         """The setpoint as the drive saw it last [mm | deg]."""
+        ...
+
+    def command_speed(self, axis: int) -> float:
+        """Speed of that setpoint over the last tick [mm/s | deg/s]."""
         ...
 
     def speed(self, axis: int) -> float:
@@ -77,7 +82,7 @@ class Coupling:
         shift = float(epoch.shift(own))
         if sensor and gear.follow:
             rotation = sensor.command(gear.slave) - float(own[gear.slave]) - shift
-            speed = gear.ratio * sensor.speed(gear.master)
+            speed = sensor.command_speed(gear.slave)
         else:
             rotation = slave_travel(gear, master - epoch.master_start)
         epoch.end = time
@@ -91,14 +96,10 @@ class Coupling:
         """R of G51.2: turn the master by `angle` [deg] at rapid; returns the end [s]. It is sync motion."""
         axis = self.machine.axes[gear.master]
         track = self.timeline.tracks[gear.master]
-        start = track.at(time)
-        peak = min(axis.rapid, math.sqrt(axis.acceleration * angle))
-        ramp = peak / axis.acceleration
-        cruise = angle / peak - ramp
-        track.add(time, start, 0.0, axis.acceleration)
-        track.add(time + ramp, start + 0.5 * peak * ramp, peak)
-        track.add(time + ramp + cruise, start + peak * (0.5 * ramp + cruise), peak, -axis.acceleration)
-        end = time + 2.0 * ramp + cruise
+        start, end = track.at(time), time
+        for phase in trapezoid(angle, speed=axis.rapid, acceleration=axis.acceleration):
+            track.add(end, start + phase.start, phase.speed, phase.acceleration)
+            end += phase.duration
         track.add(end, start + angle)
         self.moved[gear.master] = self.moved.get(gear.master, 0.0) + angle
         return end
@@ -126,9 +127,9 @@ class Coupling:
             track.add(time, start, speed, -math.copysign(rate, speed))
             track.add(end, start + travel)
             self.moved[gear.slave] += travel
-            self.moved[gear.master] += (
-                self.timeline.tracks[gear.master].at(end) - self.timeline.own(time)[gear.master]
-            )
+        master = self.timeline.tracks[gear.master]
+        if self.spindles.driven(gear.master, time):
+            self.moved[gear.master] += master.at(end) - master.at(time)
             self.spindles.free.add(gear.master)
         for axis, angle in self.moved.items():
             self.registers.release(axis, angle)

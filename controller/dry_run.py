@@ -35,6 +35,8 @@ class DryRun:
     warnings: tuple[Alarm, ...]
     absolute: Mapping[str, float]
     """axis letter -> work coordinate at the end, in programmed units"""
+    relative: Mapping[str, float]
+    """axis letter -> relative coordinate at the end, in programmed units"""
     machine: Mapping[str, float]
     """axis letter -> slide coordinate at the end, in programmed units; rotary modulo 360"""
     cycle_time_s: float
@@ -56,6 +58,10 @@ class IdealSensor:
     def command(self, axis: int) -> float:
         """The same."""
         return self.position(axis)
+
+    def command_speed(self, axis: int) -> float:
+        """The commanded speed [mm/s | deg/s]."""
+        return self.speed(axis)
 
     def speed(self, axis: int) -> float:
         """The commanded speed [mm/s | deg/s]."""
@@ -89,7 +95,7 @@ def dry_run(
 
 def _displayed(value: float, *, wrapped: bool) -> float:
     """A position as a display shows it, without rounding noise and without minus zero."""
-    return modulo(round(modulo(value), _DIGITS)) if wrapped else value + 0.0
+    return modulo(round(modulo(value), _DIGITS)) if wrapped else round(value, _DIGITS) + 0.0
 
 
 def _result(execution: Execution) -> DryRun:
@@ -97,14 +103,15 @@ def _result(execution: Execution) -> DryRun:
     slides = motion.timeline.positions(motion.time)
     motion.note_extents()
     absolute: dict[str, float] = {}
+    relative: dict[str, float] = {}
     machine: dict[str, float] = {}
     extents: dict[str, AxisExtent] = {}
     turns: dict[str, float] = {}
     for k, axis in enumerate(axes):
-        shown = [
-            round(float(value) * axis.factor, _DIGITS) for value in (motion.registers.absolute[k], slides[k])
-        ]
-        absolute[axis.letter], machine[axis.letter] = [_displayed(one, wrapped=axis.type_a) for one in shown]
+        positions = (motion.registers.absolute[k], motion.registers.relative[k], slides[k])
+        absolute[axis.letter], relative[axis.letter], machine[axis.letter] = (
+            _displayed(float(value) * axis.factor, wrapped=axis.type_a) for value in positions
+        )
         program_extent, slide_extent = (
             (round(float(e.low[k]) * axis.factor, _DIGITS), round(float(e.high[k]) * axis.factor, _DIGITS))
             for e in (motion.program_extents, motion.slide_extents)
@@ -117,6 +124,7 @@ def _result(execution: Execution) -> DryRun:
         alarms=tuple(r.alarm for r in reports if r.alarm and r.kind is EventKind.ALARM),
         warnings=tuple(r.alarm for r in reports if r.alarm and r.kind is EventKind.WARNING),
         absolute=absolute,
+        relative=relative,
         machine=machine,
         cycle_time_s=motion.time,
         extents=extents,

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from controller.alarms import Alarm, AlarmError, Severity
-from controller.commands import Command, Coolant, Dwell, Move
+from controller.commands import Command, Coolant
 from controller.coupling import Sensor
 from controller.events import EventKind, check_signals
 from controller.interpreter import Interpreter
@@ -116,11 +116,7 @@ class Execution:
         if isinstance(command, Coolant):
             kind = EventKind.COOLANT_ON if command.on else EventKind.COOLANT_OFF
             self.reports.append(Report(time=before, kind=kind))
-        if (
-            self.motion.time > before
-            or isinstance(command, Move | Dwell)
-            or self.motion.waits_for is not None
-        ):
+        if self.motion.time > before or self.motion.waits_for is not None:
             self._interpreter.moved()
 
     def _stop(self, alarm: Alarm) -> None:
@@ -132,7 +128,7 @@ class Execution:
 
     def _warn(self, alarm: Alarm) -> None:
         kind = EventKind.WARNING if alarm.severity is Severity.WARNING else EventKind.ALARM
-        self.reports.append(Report(time=self.motion.time if self.blocks else 0.0, kind=kind, alarm=alarm))
+        self.reports.append(Report(time=self.motion.time, kind=kind, alarm=alarm))
 
     def _block(self, index: int) -> int:
         """The number of a line in `blocks`, which grows with the lines that are executed."""

@@ -20,6 +20,8 @@ class RevolutionFeed:
 
     path: Path
     feed: Feed
+    tick: int
+    """at which the present period began"""
     position: float = 0.0
     """path position [mm | deg]"""
     speed: float = 0.0
@@ -34,24 +36,24 @@ class RevolutionFeed:
         """Whether the spindle has stood still too long."""
         return self._idle >= STANDSTILL
 
-    def period(self, target: float) -> list[Phase]:
-        """The phases of the next period at `target` path speed [1/s]; the last one ends the path."""
+    def period(self, target: float, duration: float) -> list[Phase]:
+        """The phases of the next `duration` [s] at `target` path speed [1/s], up to the end of the path."""
         rate = self.path.acceleration
         if target <= _NO_SPEED:
-            self._idle += FEED_PERIOD
+            self._idle += duration
             braking = self.speed / rate
-            phases = clip([Phase(braking, 0.0, self.speed, -rate)] if braking > 0.0 else [], FEED_PERIOD)
+            phases = clip([Phase(braking, 0.0, self.speed, -rate)] if braking > 0.0 else [], duration)
             reached = phases[-1].end if phases else 0.0
-            if braking < FEED_PERIOD:
-                phases.append(Phase(FEED_PERIOD - braking, reached, 0.0, 0.0))
+            if braking < duration:
+                phases.append(Phase(duration - braking, reached, 0.0, 0.0))
         else:
             self._idle = 0.0
             rest = self.path.end - self.position
             whole = (
                 trapezoid(rest, speed=target, acceleration=rate, start_speed=self.speed) if rest > 0.0 else []
             )
-            self.finished = sum(phase.duration for phase in whole) <= FEED_PERIOD
-            phases = clip(whole, FEED_PERIOD)
+            self.finished = sum(phase.duration for phase in whole) <= duration
+            phases = clip(whole, duration)
         laid = [Phase(p.duration, self.position + p.start, p.speed, p.acceleration) for p in phases]
         if laid:
             self.position, self.speed = laid[-1].end, laid[-1].end_speed

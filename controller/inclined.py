@@ -1,6 +1,6 @@
 """The inclined-axis law (988TD 倾斜轴, section 一 各轴的移动量; rulings, section 4).
 
-Cartesian (program) coordinates p, slide coordinates a, inclined axis y, orthogonal axis x, angle θ, in radius:
+Cartesian (program) coordinates p, slide coordinates a, inclined axis y, orthogonal axis x, angle θ, radius:
 y_a = y_p / cos θ,  x_a = x_p − y_p tan θ.  The factor C of the original is the ratio of the diameter factors
 of the two axes and drops out in radius.
 """

@@ -76,6 +76,7 @@ class Interpreter:
         self._frames = [
             _Frame(0, min((k for k in sorted(program.starts.values())[1:]), default=len(program.lines)), 0, 0)
         ]
+        self._parsed: dict[int, Block] = {}
         self._cursor = 0
         self._still = 0
         self._finished = False
@@ -86,7 +87,9 @@ class Interpreter:
             return None
         while self._cursor < self._frames[-1].end:
             index = self._cursor
-            block = parse_block(self._program, index, self._letters)
+            block = self._parsed.get(index) or parse_block(self._program, index, self._letters)
+            if len(self._frames) > 1:
+                self._parsed[index] = block  # a subprogram is read again and again
             if block.empty or self._skipped(block):
                 self._cursor += 1
                 continue

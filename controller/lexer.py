@@ -39,14 +39,14 @@ class _Fault(Enum):
     ADDRESS = "PS0009"
 
 
-_WORD = re.compile(r"([A-Za-z])[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))(?![\d.+-])")
-_SKIP = re.compile(r"/(\d?)")
+_WORD = re.compile(r"([A-Za-z])[ \t]*([+-]?(?:\d+\.?\d*|\.\d+))(?![\d.+-])", re.ASCII)
+_SKIP = re.compile(r"/(\d?)", re.ASCII)
 _COMMENT = re.compile(r"\([^)]*\)")
 _BLANK = re.compile(r"[ \t\u3000]+")
 _MACRO = re.compile(r"#|\[|IF|WHILE|GOTO|DO\d|END\d|THEN", re.IGNORECASE)
 _ASSIGNMENT = re.compile(r"#|[A-Za-z][ \t]*-?[#\[]")
 _LETTERS = re.compile(r"[A-Za-z]")
-_NUMBER_LIKE = re.compile(r"[+\-.\d \t]*")
+_NUMBER_LIKE = re.compile(r"[+\-.\d \t]*", re.ASCII)
 LONGEST_NUMBER = 8
 """[digits] more is PS0003"""
 

@@ -1,6 +1,5 @@
 """Commands become motion: every command starts where the last one ended, spindles run beside the axes."""
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -27,14 +26,12 @@ from controller.coupling import Sensor
 from controller.gearbox import GearBox
 from controller.inclined import cartesian_from_slides, slides_from_cartesian
 from controller.machine_data import MachineData
+from controller.path import NOTHING
 from controller.reference import Reference, References
 from controller.registers import modulo, shortest
 from controller.span import Span
 from controller.spindles import DEG_PER_S
 from controller.straight import StraightMotion
-
-_NOTHING = 1e-9
-"""[mm | deg] far below the least increment: rounding, not travel"""
 
 
 class Motion(StraightMotion):
@@ -49,10 +46,9 @@ class Motion(StraightMotion):
         warn: Callable[[Alarm], None],
         closed_form: bool = False,
     ) -> None:
-        super().__init__(machine, warn=warn, closed_form=closed_form)
+        super().__init__(machine, tick_s=tick_s, warn=warn, closed_form=closed_form)
         axes = len(machine.axes)
         self.references = References.at_power_on(axes, machine.pair)
-        self._tick_s = tick_s
         self._compensated = compensated
         self._to_slides = slides_from_cartesian(axes, machine.pair, compensated=compensated)
         self._to_cartesian = cartesian_from_slides(axes, machine.pair)
@@ -113,7 +109,7 @@ class Motion(StraightMotion):
             exact[axis] = modulo(target) if axes[axis].type_a else target
         for axis, delta in command.incremental.items():
             travel[axis] = delta
-        travel[np.abs(travel) < _NOTHING] = 0.0
+        travel[np.abs(travel) < NOTHING] = 0.0
         if pair and not self._compensated and travel[pair.inclined] != 0.0 and self.references.lose():
             found = f"a move of {axes[pair.inclined].letter} with NOZAGC = 1"
             self._warn(Alarm(number="HT9108", found=found, span=self._span))
@@ -125,7 +121,7 @@ class Motion(StraightMotion):
         for axis, target in command.target.items():
             delta = target - float(now[axis])
             slides[axis] = shortest(delta) if self.machine.axes[axis].type_a else delta
-        slides[np.abs(slides) < _NOTHING] = 0.0
+        slides[np.abs(slides) < NOTHING] = 0.0
         self._travel(slides, self._to_cartesian @ slides, None, command.spans, {})
 
     # Reference points
@@ -152,8 +148,9 @@ class Motion(StraightMotion):
             else:
                 delta = float(reference[axis] - now[axis])
                 slides[axis] = shortest(delta) if axes[axis].type_a else delta
+        for way in (slides, cartesian):
+            way[np.abs(way) < NOTHING] = 0.0
         total = slides + self._to_slides @ cartesian
-        total[np.abs(total) < _NOTHING] = 0.0
         self._travel(total, self._to_cartesian @ slides + cartesian, None, {}, {})
         self._establish(command.axes)
 
@@ -204,7 +201,7 @@ class Motion(StraightMotion):
     def _stop_spindles(self) -> None:
         self.spindles.surface = None
         gear = self.coupling.gear
-        turning = [k for k, track in enumerate(self.timeline.tracks) if track.speed(self.time) != 0.0]
+        turning = [k for k in range(len(self.machine.axes)) if self.spindles.driven(k, self.time)]
         for axis in turning:
             self._turn(axis, 0.0)
         for axis in turning:
@@ -233,7 +230,7 @@ class Motion(StraightMotion):
 
     def _engage(self, gear: GearBox, before: float, sensor: Sensor | None) -> None:
         jump = (self.coupling.engage(gear, self.time, sensor) - before) / DEG_PER_S
-        if jump != 0.0:
+        if abs(jump) > NOTHING:
             found = f"a jump of {jump:+.3f} rpm"
             self._warn(Alarm(number="HT9100", found=found, span=self._span))
 
@@ -247,7 +244,3 @@ class Motion(StraightMotion):
     def _release(self, sensor: Sensor | None) -> None:
         self.time = self.coupling.release(self.time, sensor)
         self.note_extents()
-
-    def _to_tick(self) -> None:
-        """The follow type engages and releases on a tick, where the encoders are read."""
-        self.time = math.ceil(round(self.time / self._tick_s, 6)) * self._tick_s

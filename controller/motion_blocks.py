@@ -139,8 +139,9 @@ def _feed(draft: Draft, columns: list[int]) -> Feed:
     if modal.gear:
         still, cause = modal.sync_rpm == 0.0, "S0 in sync: the work axis stands still"
     else:
-        spindle = modal.surface_speed if modal.constant_surface_speed else modal.rpm
-        still, cause = not modal.direction or not spindle, "the work spindle stands still"
+        work = draft.machine.work_spindle
+        turns = work is not None and draft.motion.spindles.turning(work, draft.motion.time)
+        still, cause = not (modal.direction or turns), "the work spindle stands still"
     if still:
         raise draft.alarm("HT9007", f"F{modal.feed:g} by G99, {cause}", place)
     measured = modal.gear is None or not draft.machine.parameters.bit(201, 2)

@@ -218,7 +218,7 @@ def delivered(setup: str = "hobbing", overrides: Mapping[str, Value] | None = No
     return Parameters(setup=setup, letters=letters, values=values)
 
 
-_KEY = re.compile(r"(\d{1,5})(?:#(\d))?(?:\.([A-Z]))?")
+_KEY = re.compile(r"(\d{1,5})(?:#(\d))?(?:\.([A-Z]))?", re.ASCII)
 
 
 def _override(values: dict[tuple[int, str], float], letters: tuple[str, ...], key: str, value: Value) -> None:

@@ -11,6 +11,8 @@ from controller.limits import Crossing
 from controller.machine_data import MachineData
 
 Floats = NDArray[np.float64]
+NOTHING = 1e-9
+"""[mm | deg] far below the least increment: rounding, not travel"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,6 +23,8 @@ class Path:
     """(axes,) positions of the tracks at the start"""
     slides: Floats
     """(axes,) travel of the slides"""
+    moving: tuple[int, ...]
+    """columns of the slides that travel"""
     cartesian: Floats
     """(axes,) travel in program terms"""
     length: float

@@ -109,6 +109,10 @@ class Track:
         """(n,) positions at the ascending times (n,)."""
         first = max(bisect.bisect_right(self.times, time[0]) - 1, 0)
         last = bisect.bisect_right(self.times, time[-1])
+        if last - first == 1:
+            position, speed, half = self.knots[first]
+            tau = time - self.times[first]
+            return position + tau * (speed + tau * half)
         times = np.array(self.times[first:last])
         knots = np.array(self.knots[first:last])
         k = np.searchsorted(times[1:], time, side="right")

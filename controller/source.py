@@ -11,8 +11,8 @@ LONGEST_LINE = 2000
 """[characters] no block is longer; what is, is not a program"""
 
 _COMMENT = re.compile(r"\([^)]*\)")
-_O_NUMBER = re.compile(r"^\s*%?\s*[Oo]\s*(\d{1,8})(?!\d)")
-_N_NUMBER = re.compile(r"^\s*/?\d?\s*[Nn]\s*(\d{1,8})(?!\d)")
+_O_NUMBER = re.compile(r"^\s*%?\s*[Oo]\s*(\d{1,8})(?!\d)", re.ASCII)
+_N_NUMBER = re.compile(r"^\s*/?\d?\s*[Nn]\s*(\d{1,8})(?!\d)", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f]")
 
 

@@ -48,8 +48,12 @@ class Spindles:
         return max(time, self.arrival.get(axis, time))
 
     def turning(self, axis: int, time: float) -> bool:
-        """Whether the axis turns, by itself or in the gear box."""
-        return self.timeline.speed(axis, time) != 0.0
+        """Whether the axis turns, by itself or in the gear box, or is about to."""
+        return self.timeline.speed(axis, time) != 0.0 or self.driven(axis, time)
+
+    def driven(self, axis: int, time: float) -> bool:
+        """Whether the axis turns by its own speed command, or is about to."""
+        return self.timeline.tracks[axis].speed(time) != 0.0 or self.arrival.get(axis, time) > time
 
     def surface_rpm(self, radius: float) -> float:
         """Speed [rpm] that G96 asks for at a radius [mm]; n = 1000 V / (π D), clamped."""

@@ -5,6 +5,7 @@ per revolution waits until the spindle has reached its commanded speed, then goe
 one closed form or by the measured speed in periods of 8 ms; all other moves do not wait for spindles.
 """
 
+import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -13,11 +14,11 @@ from numpy.typing import NDArray
 from controller.alarms import Alarm, alarm
 from controller.commands import Feed
 from controller.coupling import Coupling, Sensor
-from controller.feeding import RevolutionFeed
+from controller.feeding import FEED_PERIOD, RevolutionFeed
 from controller.gearbox import SyncKind
 from controller.limits import first_crossing
 from controller.machine_data import MachineData
-from controller.path import Extents, Path, path_limits, stopping_point
+from controller.path import NOTHING, Extents, Path, path_limits, stopping_point
 from controller.registers import Registers
 from controller.segments import Phase, trapezoid
 from controller.span import Span
@@ -35,7 +36,9 @@ class StraightMotion:
     say then.
     """
 
-    def __init__(self, machine: MachineData, *, warn: Callable[[Alarm], None], closed_form: bool) -> None:
+    def __init__(
+        self, machine: MachineData, *, tick_s: float, warn: Callable[[Alarm], None], closed_form: bool
+    ) -> None:
         axes = len(machine.axes)
         self.machine = machine
         self.time = 0.0
@@ -47,9 +50,12 @@ class StraightMotion:
         self.program_extents = Extents.at(np.zeros(axes))
         self.waits_for: float | None = None
         self._resume: Callable[[Sensor], None] | None = None
+        self._rate = round(1.0 / tick_s)
         self._warn = warn
         self._closed_form = closed_form
         self._span: Span | None = None
+        self._lower = np.array([axis.lower for axis in machine.axes])
+        self._upper = np.array([axis.upper for axis in machine.axes])
 
     def resume(self, sensor: Sensor) -> None:
         """Go on from `waits_for` with the encoders as they were then."""
@@ -67,6 +73,12 @@ class StraightMotion:
         self.waits_for = self.time
         self._resume = step
 
+    def _to_tick(self) -> int:
+        """Wait for the next tick, where the encoders are read; returns its number."""
+        tick = math.ceil(round(self.time * self._rate, 6))
+        self.time = max(self.time, tick / self._rate)
+        return tick
+
     def _travel(
         self,
         slides: Floats,
@@ -81,9 +93,11 @@ class StraightMotion:
         if path is None:
             self.registers.absolute[list(exact)] = list(exact.values())
             return
-        if feed and feed.per_revolution and feed.measured and not self._commanded_is_measured:
-            self._feed_on(RevolutionFeed(path=path, feed=feed), spans)
-            return
+        if feed and feed.measured:
+            tick = self._to_tick()
+            if not self._commanded_is_measured:
+                self._feed_on(RevolutionFeed(path=path, feed=feed, tick=tick), spans)
+                return
         speed = self._path_speed(path, feed)
         if path.end > 0.0:
             phases = trapezoid(path.end, speed=speed, acceleration=path.acceleration)
@@ -99,7 +113,7 @@ class StraightMotion:
     ) -> Path | None:
         """The path of a move, its limits included; None where nothing is to be travelled."""
         length = float(np.linalg.norm(cartesian))
-        if length == 0.0:
+        if length < NOTHING:
             return None
         own = self.timeline.own(self.time)
         gear = self.coupling.gear
@@ -107,11 +121,9 @@ class StraightMotion:
         induced = (gear.slave, float(epoch.weights @ slides)) if gear and epoch else None
         speed, acceleration = path_limits(self.machine, slides, induced, rapid=feed is None)
         top, rate = speed * length, acceleration * length
-        lower = np.array([axis.lower for axis in self.machine.axes])
-        upper = np.array([axis.upper for axis in self.machine.axes])
         by_slides = not self.machine.parameters.bit(8201, 0)
         start, way = (own, slides) if by_slides else (self.registers.cartesian, cartesian)
-        crossing = first_crossing(start, way, lower, upper)
+        crossing = first_crossing(start, way, self._lower, self._upper)
         end = length
         if crossing:
             wanted = min(top, feed.value) if feed and not feed.per_revolution else top
@@ -120,6 +132,7 @@ class StraightMotion:
         return Path(
             own=own,
             slides=slides,
+            moving=tuple(np.flatnonzero(slides).tolist()),
             cartesian=cartesian,
             length=length,
             top_speed=top,
@@ -146,14 +159,14 @@ class StraightMotion:
 
     def _lay(self, path: Path, phase: Phase, time: float) -> None:
         """Put one phase of the motion on the tracks of the axes that move."""
-        for axis in np.flatnonzero(path.slides):
+        for axis in path.moving:
             share = float(path.slides[axis]) / path.length
             position = float(path.own[axis]) + share * phase.start
             self.timeline.tracks[axis].add(time, position, share * phase.speed, share * phase.acceleration)
 
     def _arrive(self, path: Path, spans: Mapping[int, Span]) -> None:
         """Stand still at the end of the path, bring the registers there, and stop on a stroke limit."""
-        for axis in np.flatnonzero(path.slides):
+        for axis in path.moving:
             position = float(path.own[axis] + path.slides[axis] * path.fraction)
             self.timeline.tracks[axis].add(self.time, position)
         self.registers.move(path.cartesian * path.fraction)
@@ -190,7 +203,9 @@ class StraightMotion:
         gear = self.coupling.gear
         if gear:
             return gear.slave if gear.kind is SyncKind.HOBBING else gear.master
-        return self.machine.work_spindle or 0
+        if self.machine.work_spindle is None:
+            raise alarm("HT9005", "no work spindle in parameter 9001 for a feed per revolution", self._span)
+        return self.machine.work_spindle
 
     def _driven_axis(self) -> int:
         """The axis whose speed S commands."""
@@ -210,9 +225,13 @@ class StraightMotion:
             self._warn_slowed(wanted, path.top_speed)
         radial = self.spindles.surface.radial if self.spindles.surface else None
         before = self.time
-        for phase in revolution.period(min(wanted, path.top_speed)):
+        revolution.tick += max(1, round(FEED_PERIOD * self._rate))
+        end = revolution.tick / self._rate
+        for phase in revolution.period(min(wanted, path.top_speed), end - self.time):
             self._lay(path, phase, self.time)
             self.time += phase.duration
+        if not revolution.finished:
+            self.time = end
         if radial is not None:
             done = revolution.position / path.length
             radius = float(self.registers.absolute[radial] + path.cartesian[radial] * done)

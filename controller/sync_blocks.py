@@ -243,8 +243,7 @@ def _engage(draft: Draft, gear: GearBox, word: Word | None, phase: float = 0.0) 
     _check_slave_speed(draft, gear, draft.modal.sync_rpm, word)
     draft.modal = replace(draft.modal, gear=gear)
     draft.set_code(*_ON[gear.kind])
-    span = draft.block.place(word) if word else draft.block.span
-    draft.commands.append(Couple(gear=gear, phase=phase, span=span))
+    draft.commands.append(Couple(gear=gear, phase=phase))
 
 
 def _orientation(draft: Draft, column: int) -> str:

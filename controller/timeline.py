@@ -54,6 +54,8 @@ class Marks:
 
     def sample(self, time: Floats) -> NDArray[np.int64]:
         """(n,) values in force up to each time (n,)."""
+        if self.times[-1] < time[0]:
+            return np.full(len(time), self.values[-1])
         k = np.searchsorted(np.array(self.times), time, side="left") - 1
         return np.array(self.values)[k]
 
@@ -124,10 +126,10 @@ class Timeline:
         return out
 
     def in_sync(self, time: Floats) -> NDArray[np.bool_]:
-        """(n,) whether the gear box is engaged."""
+        """(n,) whether the gear box was engaged up to each time."""
         engaged = np.zeros(len(time), dtype=bool)
         for epoch in self.epochs:
-            engaged |= (time >= epoch.start) & (time < epoch.end)
+            engaged |= (time > epoch.start) & (time <= epoch.end)
         return engaged
 
     def still_until(self, time: float) -> float:

@@ -57,6 +57,7 @@ def drive() -> Callable[..., Driven]:
     def _drive(
         text: str,
         setup: str = "hobbing",
+        *,
         parameters: Mapping[str, str | float] | None = None,
         offsets: Offsets | None = None,
         limit: int = 4096,

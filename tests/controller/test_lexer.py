@@ -1,4 +1,5 @@
 import pytest
+
 from controller.alarms import AlarmError
 from controller.lexer import lex
 
@@ -16,7 +17,7 @@ def words(line: str) -> list[tuple[str, str, int]]:
         ("g01 x 12.", [("G", "01", 1), ("X", "12.", 5)]),
         ("G50.2 (G81 X;) M05", [("G", "50.2", 1), ("M", "05", 16)]),
         ("/2 N1 G00 X+5", [("/", "2", 1), ("N", "1", 4), ("G", "00", 7), ("X", "+5", 11)]),
-        ("X100.-5" [:5], [("X", "100.", 1)]),
+        ("X100.-5"[:5], [("X", "100.", 1)]),
         ("%", []),
         ("", []),
         ("X\t1 \u3000Z2", [("X", "1", 1), ("Z", "2", 6)]),
@@ -54,7 +55,8 @@ def test_words_and_columns(line: str, expected: list[tuple[str, str, int]]) -> N
     ],
 )
 def test_faults_are_placed(line: str, number: str, column: int) -> None:
-    """Rulings, section 1: an address without a number is PS0005, never skipped; PS0003-PS0009 each its fault."""
+    """Rulings, section 1: an address without a number is PS0005, never skipped; PS0003-PS0009 each its
+    fault."""
     with pytest.raises(AlarmError) as caught:
         lex(line, "a.nc", 3)
     alarm = caught.value.alarm

@@ -1,4 +1,5 @@
 import pytest
+
 from controller.alarms import AlarmError, ControllerError
 from controller.machine_data import machine_data
 from controller.parameters import PARAMETERS, delivered
@@ -35,7 +36,9 @@ def test_overrides_of_a_bit_an_axis_and_an_axis_bit() -> None:
     assert delivered("hobbing", {"201#4": 1, "201#4 ": 0}).number(201) == 0
 
 
-@pytest.mark.parametrize(("value", "angle"), [("-30000", -30.0), (-30.0, -30.0), ("-30.", -30.0), ("15500", 15.5)])
+@pytest.mark.parametrize(
+    ("value", "angle"), [("-30000", -30.0), (-30.0, -30.0), ("-30.", -30.0), ("15500", 15.5)]
+)
 def test_8210_counts_thousandths_unless_it_has_a_point(value: str | float, angle: float) -> None:
     """Rulings, section 0."""
     pair = machine_data(delivered("tilted", {"8200#0": 1, "8210": value})).pair
@@ -66,7 +69,7 @@ def test_wrong_overrides_are_refused_by_name(key: str, value: str | float, messa
     with pytest.raises(ControllerError, match="error: ") as caught:
         delivered("hobbing", {key: value})
     assert message in str(caught.value)
-    assert key.split("#")[0].split(".")[0] in str(caught.value)
+    assert key.split("#", maxsplit=1)[0].split(".", maxsplit=1)[0] in str(caught.value)
 
 
 def test_unknown_setup() -> None:

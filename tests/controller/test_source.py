@@ -2,6 +2,7 @@ import codecs
 from pathlib import Path
 
 import pytest
+
 from controller.alarms import AlarmError
 from controller.source import load_program, parse_program
 
@@ -31,7 +32,9 @@ def test_text_in_any_usual_form(tmp_path: Path, encoding: str, end: str) -> None
         (b"O1\nM99\nO1\nM30", "HT9012", 3, 1),
     ],
 )
-def test_what_is_no_program(tmp_path: Path, data: bytes, number: str, line: int | None, column: int | None) -> None:
+def test_what_is_no_program(
+    tmp_path: Path, data: bytes, number: str, line: int | None, column: int | None
+) -> None:
     path = tmp_path / "junk.nc"
     path.write_bytes(data)
     with pytest.raises(AlarmError) as caught:

@@ -2,8 +2,10 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated, Literal
 
 import numpy as np
+from msgspec import Meta
 
 from twin.cutters.cutter import Cutter
 from twin.cutters.profile import ToothProfile
@@ -14,28 +16,31 @@ from twin.errors import InputError
 class Hob:
     """A hob by its catalogue data."""
 
-    normal_module_mm: float
+    normal_module_mm: Annotated[float, Meta(gt=0)]
     """m_n"""
-    outside_diameter_mm: float
+    outside_diameter_mm: Annotated[float, Meta(gt=0)]
     """d_a0"""
-    starts: int = 1
+    starts: Annotated[int, Meta(ge=1, le=20)] = 1
     """z_0"""
-    gashes: int = 12
+    gashes: Annotated[int, Meta(ge=1, le=100)] = 12
     """n_i"""
-    hand: str = "right"
-    """"right" | "left" """
-    pressure_angle_deg: float = 20.0
+    gash: Literal["straight"] = "straight"
+    """parallel to the axis, rake face radial"""
+    hand: Literal["right", "left"] = "right"
+    pressure_angle_deg: Annotated[float, Meta(gt=0, lt=45)] = 20.0
     """alpha_n"""
-    addendum_factor: float = 1.25
+    addendum_factor: Annotated[float, Meta(gt=0)] = 1.25
     """h_aP0 in modules"""
-    tip_radius_factor: float = 0.38
+    tip_radius_factor: Annotated[float, Meta(ge=0)] = 0.38
     """rho_aP0 in modules"""
-    dedendum_factor: float = 1.25
+    dedendum_factor: Annotated[float, Meta(gt=0)] = 1.25
     """h_fP0 in modules: down to the land between the teeth"""
-    length_mm: float | None = None
+    length_mm: Annotated[float, Meta(gt=0)] | None = None
     """None = longer than any cut needs"""
     shift_mm: float = 0.0
     """of the hob along its axis"""
+    swivel_deg: Annotated[float, Meta(ge=-90, le=90)] | None = None
+    """eta as the operator set it; None = from the nominal helix and the lead angle"""
 
     def __post_init__(self) -> None:
         if self.pitch_diameter <= 0 or self.starts * self.normal_module_mm >= self.pitch_diameter:
@@ -44,6 +49,7 @@ class Hob:
                 f"{self.normal_module_mm:g} mm, {self.starts} start(s)",
                 remedy=f"more than {(2 * self.addendum_factor + self.starts) * self.normal_module_mm:g} mm",
             )
+        self.profile()
 
     @property
     def sign(self) -> int:

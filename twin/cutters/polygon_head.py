@@ -2,8 +2,10 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 
 from twin.cutters.cutter import Cutter
 from twin.cutters.profile import ToothProfile
@@ -14,12 +16,12 @@ from twin.errors import InputError
 class PolygonHead:
     """A cutter head whose axis is parallel to the work's."""
 
-    inserts: int
+    inserts: Annotated[int, Meta(ge=1, le=100)]
     """P"""
-    tip_radius_mm: float
+    tip_radius_mm: Annotated[float, Meta(gt=0)]
     """R"""
-    edge_width_mm: float = 2.0
-    corner_radius_mm: float = 0.0
+    edge_width_mm: Annotated[float, Meta(gt=0)] = 2.0
+    corner_radius_mm: Annotated[float, Meta(ge=0)] = 0.0
 
     def __post_init__(self) -> None:
         if 2.0 * self.corner_radius_mm > self.edge_width_mm:

@@ -62,19 +62,23 @@ class ToothProfile:
         return depth, g_x, g_y
 
     def takeover(self, s: Floats, rho: Floats, reach: Floats) -> Floats:
-        """Bound on what lies above the nearest tooth's tangent within `reach` of a point.
+        """Bound on how far `depth` rises above its own tangent within `reach` of a point, in the rake plane.
 
-        The depth of one tooth is concave, for a tooth is convex: its tangent bounds it from above. Only a
-        neighbouring tooth or the land between them can rise above that, by the difference of two tangents.
+        A tooth is convex, so its depth is concave: the tangent bounds it from above. Only another tooth or
+        the land can rise above the tangent of the one that is deepest here, by the difference of tangents.
         """
         x = np.abs(self.fold(s))
         own, g_x, g_y = self._tooth(x, rho)
         land = self.root - rho
-        excess = np.maximum(land - own + np.hypot(g_x, g_y + 1.0) * reach, 0.0)
+        deepest, d_x, d_y = np.maximum(own, land), g_x, g_y
+        below = land > own
+        if below.any():
+            d_x, d_y = np.where(below, 0.0, g_x), np.where(below, -1.0, g_y)
+        excess = np.maximum(land - deepest + np.hypot(d_x, d_y + 1.0) * reach, 0.0)
+        excess = np.maximum(excess, own - deepest + np.hypot(g_x - d_x, g_y - d_y) * reach)
         if math.isfinite(self.pitch):
             other, o_x, o_y = self._tooth(self.pitch - x, rho)
-            apart = np.hypot(g_x + o_x, g_y - o_y)
-            excess = np.maximum(excess, other - own + apart * reach)
+            excess = np.maximum(excess, other - deepest + np.hypot(o_x + d_x, o_y - d_y) * reach)
         return excess
 
     def _tooth(self, x: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
@@ -92,7 +96,6 @@ class ToothProfile:
         if arc.any():
             reach = np.hypot(dx[arc], dy[arc])
             depth[arc] = self.corner_radius - reach
-            reach[reach == 0.0] = 1.0
             g_x[arc] = -dx[arc] / reach
             g_y[arc] = -dy[arc] / reach
         return depth, g_x, g_y

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from twin.cutters.cutter import Cutter
 from twin.cutting.crossings import find_crossings, leaf_cells, node_depths
 from twin.cutting.dual import Cells, Surface, contour
+from twin.cutting.engagement import StockCylinder, scraped
 from twin.cutting.field import DepthField
 from twin.cutting.grid import grid_around
 from twin.cutting.motion import CutterMotion
@@ -60,19 +61,11 @@ def cut(
     teeth and the size of the blank. Raises PartError where nothing is left or the motion is not modelled.
     """
     progress("passes", 0.0)
-    sweep = Sweep(tuple(DepthField(c, m, blank.radius, blank.z_range) for c, m in tools))
-    notes: list[str] = []
-    if sweep.count == 0:
-        notes.append("the tool never came near the blank: nothing was cut")
-        return CutResult(
-            remains=subtract(blank, None), method="none", cell_mm=(0.0, 0.0, 0.0), passes=0, pairs=0,
-            checked=0, largest_error_um=0.0, notes=tuple(notes),
-        )  # fmt: skip
-    cell = cell_mm or _cell(blank, tools)
+    cell = _cell(blank, tools) if cell_mm is None else cell_mm
     lowest = max(0.02 * blank.radius, 0.5 * blank.bore_mm, min(_closest(c, m) for c, m in tools))
     low = max(lowest - 2.5 * cell, 0.01 * blank.radius)
     if low >= blank.radius:
-        low = blank.radius - 3 * cell
+        low = max(blank.radius - 3 * cell, 0.5 * blank.radius)
     grid = grid_around(
         r_low=low,
         r_high=blank.radius,
@@ -80,6 +73,14 @@ def cut(
         z_high=blank.z_range[1],
         cell=(cell, cell, 2.0 * cell),
     )
+    sweep = Sweep(tuple(DepthField(c, m, grid.hull_radius, grid.z_range) for c, m in tools))
+    notes = [*_rubbing(blank, tools)]
+    if sweep.count == 0:
+        notes.append("the tool never came near the blank: nothing was cut")
+        return CutResult(
+            remains=subtract(blank, None), method="none", cell_mm=(0.0, 0.0, 0.0), passes=0, pairs=0,
+            checked=0, largest_error_um=0.0, notes=tuple(notes),
+        )  # fmt: skip
     progress("searching the cut surface", 0.1)
     leaves = refine(sweep, grid)
     progress("crossings", 0.5)
@@ -117,6 +118,17 @@ def cut(
     )
 
 
+def _rubbing(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> list[str]:
+    """What to say of tools that stand still in the stock while it moves."""
+    ways = [scraped(c, m, StockCylinder.around(m.mount, blank.radius, blank.z_range)) for c, m in tools]
+    return [
+        f"the tool stood still within the blank's outline while the blank moved {way:.3g} mm past it: "
+        "what that scrapes off is not modelled"
+        for way in ways
+        if way > 0
+    ]
+
+
 def _cell(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> float:
     """Cell size [mm]: a sixtieth of the tooth pitch, or what keeps to CELLS on a toothed blank."""
     pitch = min(c.profile.pitch for c, _ in tools)
@@ -147,7 +159,9 @@ def _check(sweep: Sweep, surface: Surface, blank: Blank) -> Floats:
     v = surface.vertices
     low, high = blank.z_range
     r = np.hypot(v[:, 0], v[:, 1])
-    inside = np.flatnonzero((r < blank.radius) & (r > 0.5 * blank.bore_mm) & (v[:, 2] > low) & (v[:, 2] < high))
+    inside = np.flatnonzero(
+        (r < blank.radius) & (r > 0.5 * blank.bore_mm) & (v[:, 2] > low) & (v[:, 2] < high)
+    )
     if not len(inside):
         return np.zeros(0)
     chosen = np.random.default_rng(0).choice(inside, min(CHECKED, len(inside)), replace=False)

@@ -22,6 +22,8 @@ Ints = NDArray[np.int64]
 SHARP = 0.03
 """Share of an eigenvalue of the normals' scatter above which a direction is an edge of its own: tangent
 planes more than about 20° apart. Feed marks and generating flats meet at a few degrees: they are surface."""
+MARGIN = 0.05
+"""Share of a cell by which a vertex may stand outside its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,22 +90,33 @@ def _fit(grid: Grid, cells: Cells, crossings: Crossings, first: Ints) -> tuple[F
     shift = np.einsum("nxe,ne,nye,ny->nx", vectors, inverse, vectors, pull)
     sharp = values[:, 1] > SHARP * values[:, 2]
     vertices = middle + shift
-    # a vertex that leaves its cell folds the mesh: fall back to the middle of the crossings
+    # a vertex that leaves its cell may fold the mesh: fall back to the middle of the crossings
     cell = np.repeat(np.arange(len(cells.case)), SHEETS[cells.case])
-    out = ~_inside(grid, cells.low[cell], vertices)
+    out = ~_free(grid, cells.low, cells.low[cell], vertices)
     vertices[out] = middle[out]
     return vertices, normal, sharp & ~out
 
 
-def _inside(grid: Grid, low: Ints, points: Floats) -> NDArray[np.bool_]:
-    """Whether points lie in their cells."""
-    i, j, k = low.T
-    r = np.hypot(points[:, 0], points[:, 1])
-    turn = np.arctan2(points[:, 1], points[:, 0]) - grid.angle(j + 0.5)
-    turn = (turn + math.pi) % (2 * math.pi) - math.pi
-    z = points[:, 2]
-    inside = (r >= grid.r[i]) & (r <= grid.r[i + 1]) & (np.abs(turn) <= math.pi / grid.sectors)
-    return inside & (z >= grid.z[k]) & (z <= grid.z[k + 1])
+def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.bool_]:
+    """Whether points lie in their own cells, or in a neighbour that the surface's signs do not show.
+
+    A sharp corner may reach between the nodes of a cell without touching one; its vertex belongs there. A
+    corner on the very border of two cells belongs to either: MARGIN.
+    """
+    nr, nt, nz = grid.cells
+    r = np.interp(np.hypot(points[:, 0], points[:, 1]), grid.r, np.arange(nr + 1))
+    turn = np.arctan2(points[:, 1], points[:, 0]) * (nt / (2 * math.pi)) - low[:, 1]
+    turn -= nt * np.rint((turn - 0.5) / nt)
+    z = np.interp(points[:, 2], grid.z, np.arange(nz + 1))
+    off = np.stack([r - low[:, 0], turn, z - low[:, 2]], axis=1)
+    own = ((off >= -MARGIN) & (off <= 1 + MARGIN)).all(axis=1)
+    step = np.floor(off).astype(np.int64)
+    there = low + step
+    near = (np.abs(step) <= 1).all(axis=1) & ((there >= 0) & (there < [nr, 2 * nt, nz]))[:, [0, 2]].all(axis=1)
+    ids = np.sort(grid.node_id(*occupied.T))
+    mine = grid.node_id(np.clip(there[:, 0], 0, nr), there[:, 1], np.clip(there[:, 2], 0, nz))
+    at = np.minimum(np.searchsorted(ids, mine), len(ids) - 1)
+    return own | (near & (ids[at] != mine))
 
 
 def _onto_surface(sweep: Sweep, points: Floats, lists: Candidates, cell: float) -> Floats:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
+from twin.cutting.engagement import inner_radius
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passes import Passes, find_passes
 
@@ -22,7 +23,14 @@ Ints = NDArray[np.int64]
 SETTLED = 1e-4
 """Residual angle [rad] below which one linear step ends the search for the meeting instant: it leaves half
 the stock's acceleration over that angle, 1e-8 of the work radius."""
+STILL = 1e-30
+"""[rad per sample] in place of no motion at all, to divide by"""
+STEEPEST = 0.63
+"""Share of the edge's speed that the stock may have for `bound` to prove anything: slant 1.7"""
 ROUNDS = 12
+HALVINGS = 60
+WIDEST = 0.5
+"""[rad] at which the distance from the end of a sweep stops to count"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +77,7 @@ class DepthField:
         self, cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]
     ) -> None:
         self.cutter = cutter
+        self._inner = inner_radius(cutter)
         self.passes: Passes = find_passes(cutter, motion, stock_radius, stock_z)
         self._basis = motion.basis
         self._mount = motion.mount
@@ -90,8 +99,15 @@ class DepthField:
         for _ in range(ROUNDS):
             at = np.clip(at - state.lag / state.lag_rate, first, last)
             state = self._state(local, at, angle)
-            if np.abs(state.lag).max(initial=0.0) < SETTLED or not self._unsettled(state, at, first, last):
+            if np.abs(state.lag).max(initial=0.0) < SETTLED:
                 break
+            restless = self._unsettled(state, at, first, last)
+            if not restless.any():
+                break
+        else:
+            rows = np.flatnonzero(restless)
+            at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
+            state = self._state(local, at, angle)
         end = np.clip(at - state.lag / state.lag_rate, first, last)
         step = end - at
         s = state.s + state.s_rate * step
@@ -105,14 +121,19 @@ class DepthField:
             depth = np.where(past, inside, depth)
             by_s = np.where(past, -np.sign(off), by_s)
             by_rho = np.where(past, 0.0, by_rho)
-        if self._partial.any():
+        by_turn = np.zeros(len(depth))
+        follows = np.ones(len(depth))
+        partial = np.flatnonzero(self._partial[index])
+        if len(partial):
             # where the tool stops turning, its sweep ends at the rake plane itself
-            tool_angle = state.tool_angle + state.tool_rate * step
-            run = p.run_angle[index]
-            to_rake = np.minimum(tool_angle - run[:, 0], run[:, 1] - tool_angle)
-            to_rake = to_rake - np.abs(state.lag + state.lag_rate * step)
-            depth = np.where(self._partial[index], np.minimum(depth, rho * to_rake), depth)
-        slope = self._gradient(state, by_s, by_rho) if gradient else np.zeros((0, 3))
+            to_rake, rate, met = self._to_rake(state, step, p.run_angle[index], partial)
+            ends = rho[partial] * to_rake < depth[partial]
+            depth[partial] = np.where(ends, rho[partial] * to_rake, depth[partial])
+            by_s[partial[ends]] = 0.0
+            by_rho[partial] = np.where(ends, to_rake, by_rho[partial])
+            by_turn[partial] = np.where(ends, rate, 0.0)
+            follows[partial] = met
+        slope = self._gradient(state, by_s, by_rho, by_turn, follows) if gradient else np.zeros((0, 3))
         return Meeting(depth, slope, outline, rho, end)
 
     def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats, Floats]:
@@ -131,14 +152,23 @@ class DepthField:
         A velocity jump between two samples adds its share of the way that remains.
         """
         p = self.passes
-        slant = p.slant[index]
-        reach = radius * np.sqrt(1.0 + slant**2)
-        inner = np.maximum(meeting.rho - reach, 1e-6)
-        curvature = (1.0 + slant) ** 4 / inner + 2.0 * (1.0 + slant) ** 2 * p.turn[index]
-        jumps = 1.0 + 2.0 * radius * p.samples[index]
-        bent = 0.5 * curvature * radius**2 + p.jolt[index] * radius * jumps
-        bent[self._partial[index]] = np.inf
-        return reach, bent, self.cutter.profile.takeover(meeting.s, meeting.rho, reach)
+        # no point of the block can meet the edge further in than this, if `change` is less than 2 radius
+        low = np.maximum(meeting.rho - 2.0 * radius, 1e-6)
+        share = p.slant[index] / (1.0 + p.slant[index]) * self._inner / low
+        proved = share < STEEPEST
+        slant = np.where(proved, share / (1.0 - np.where(proved, share, 0.0)), 0.0)
+        slower = (1.0 + slant) / (1.0 + p.slant[index]) * self._inner / low
+        change = radius * np.sqrt(1.0 + slant**2)
+        curvature = (1.0 + slant) ** 4 / low + 2.0 * (1.0 + slant) ** 2 * slower * p.turn[index]
+        jumps = 1.0 + 2.0 * radius * slower * p.samples[index]
+        jolt = p.jolt[index] * slower * np.maximum(slower, 1.0)
+        bent = 0.5 * curvature * radius**2 + jolt * radius * jumps + p.creep[index]
+        excess = self.cutter.profile.takeover(meeting.s, meeting.rho, change)
+        partial = self._partial[index]
+        change = np.where(partial, radius * (1.0 + WIDEST + slant), change) + p.creep[index]
+        change[~proved] = np.inf
+        bent[~proved | partial] = np.inf
+        return change, bent, excess
 
     def near(self, point: Floats, radius: float) -> Ints:
         """Passes whose tool may come within `radius` of a point (3,) of the part [mm]."""
@@ -151,12 +181,40 @@ class DepthField:
         return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel)
 
     @staticmethod
-    def _unsettled(state: _State, at: Floats, first: Floats, last: Floats) -> bool:
-        """Whether a point is left that can still come closer to its meeting instant."""
+    def _unsettled(state: _State, at: Floats, first: Floats, last: Floats) -> NDArray[np.bool_]:
+        """Points that can still come closer to their meeting instant."""
         free = np.abs(state.lag) >= SETTLED
         wanted = at - state.lag / state.lag_rate
         held = ((at == first) & (wanted < first)) | ((at == last) & (wanted > last))
-        return bool((free & ~held).any())
+        return free & ~held
+
+    def _bisect(self, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
+        """Meeting instants where Newton's steps go round in circles: the speed changes too much on the way."""
+        low, high = first.copy(), last.copy()
+        falling = self._state(local, low, angle).lag > self._state(local, high, angle).lag
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            early = (self._state(local, middle, angle).lag < 0) != falling
+            low = np.where(early, middle, low)
+            high = np.where(early, high, middle)
+        return low
+
+    @staticmethod
+    def _to_rake(
+        state: _State, step: Floats, run: Floats, rows: Ints
+    ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """Angle (k,) from the end of the sweep, its rate across the rake plane, and whether the point meets it.
+
+        Negative for a point that the edge never comes to.
+        """
+        ahead = state.tool_angle + state.tool_rate * step
+        ahead = np.stack([ahead - run[:, 0], run[:, 1] - ahead])[:, rows]
+        side = np.where(ahead[0] < ahead[1], 1.0, -1.0)
+        lag = (state.lag + state.lag_rate * step)[rows]
+        met = np.abs(lag) < SETTLED**2
+        angle = ahead.min(axis=0) - np.abs(lag)
+        rate = np.where(met, side * state.tool_rate[rows] / state.lag_rate[rows], np.sign(lag))
+        return np.clip(angle, -WIDEST, WIDEST), np.where(np.abs(angle) < WIDEST, rate, 0.0), met
 
     def _state(self, local: Floats, at: Floats, angle: Floats) -> _State:
         """Points `local` (3, m) at fractional samples `at` (m,), edges at unwrapped tool `angle`."""
@@ -176,6 +234,7 @@ class DepthField:
         tool = tool + part * d_tool
         lag = tool - angle - np.arctan2(b, a)
         lag_rate = d_tool - (a * b_rate - b * a_rate) / rho2
+        lag_rate[lag_rate == 0.0] = STILL
         return _State(
             cos=cos,
             sin=sin,
@@ -190,11 +249,15 @@ class DepthField:
             tool_rate=d_tool,
         )
 
-    def _gradient(self, state: _State, by_s: Floats, by_rho: Floats) -> Floats:
-        """Gradient (m, 3) in the part frame, the meeting instant following the point."""
+    def _gradient(
+        self, state: _State, by_s: Floats, by_rho: Floats, by_turn: Floats, follows: Floats
+    ) -> Floats:
+        """Gradient (m, 3) in the part frame; the meeting instant `follows` the point (1) or not (0)."""
         a, b = state.side / state.rho
         # d instant / d point = e_psi / (rho lag_rate)
-        drift = (by_s * state.s_rate + by_rho * state.rho_rate) / (state.rho * state.lag_rate)
+        drift = (
+            follows * (by_s * state.s_rate + by_rho * state.rho_rate) / (state.rho * state.lag_rate) + by_turn
+        )
         across = np.stack([by_rho * a - drift * b, by_rho * b + drift * a, by_s])
         gx, gy, gz = self._basis.T @ across
         turned = np.stack([gx * state.cos + gy * state.sin, gy * state.cos - gx * state.sin, gz], axis=1)

@@ -11,6 +11,8 @@ Ints = NDArray[np.int64]
 
 BLOCK = 32
 """Cells along the edge of the coarsest block."""
+FEWEST = 6
+"""Coarsest blocks around: fewer make hulls that stand far out of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +44,16 @@ class Grid:
             float(self.r[-1] * 2 * math.pi / self.sectors),
             float(np.diff(self.z).max()),
         )
+
+    @property
+    def hull_radius(self) -> float:
+        """Radius of a cylinder that holds the hulls of all blocks [mm]."""
+        return float(self.r[-1]) / math.cos(BLOCK * math.pi / self.sectors)
+
+    @property
+    def z_range(self) -> tuple[float, float]:
+        """Lowest and highest z [mm]."""
+        return float(self.z[0]), float(self.z[-1])
 
     def angle(self, j: Ints | Floats) -> Floats:
         """Angle of node index `j` [rad]."""
@@ -92,7 +104,7 @@ def grid_around(
     nz += nz % 2
     dr = (r_high - r_low) / nr
     dz = (z_high - z_low) / nz
-    sectors = BLOCK * max(1, round(2 * math.pi * r_high / cell[1] / BLOCK))
+    sectors = BLOCK * max(FEWEST, round(2 * math.pi * r_high / cell[1] / BLOCK))
     return Grid(
         r=r_low + dr * np.arange(nr + 3),
         sectors=sectors,

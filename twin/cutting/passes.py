@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
+from twin.cutting.engagement import StockCylinder, inner_radius, stock_speed, turning_runs
 from twin.cutting.motion import CutterMotion
-from twin.errors import PartError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,6 +33,8 @@ class Passes:
     """(k,) its end"""
     travel: Floats
     """(k,) bound on how far a point of the stock moves against the tool carrier during the pass [mm]"""
+    carried: Floats
+    """(k,) bound on how far the slides alone carry the tool during the pass [mm]"""
     run_angle: Floats
     """(k, 2) tool angle at the lower and the upper end of the run [rad]"""
     slant: Floats
@@ -43,6 +45,9 @@ class Passes:
     """(k,) bound on the velocity jump between two samples over the edge's speed"""
     samples: Floats
     """(k,) bound on the samples per way of the edge across the rake plane [1/mm]"""
+    creep: Floats
+    """(k,) way of the stock in the samples that the four bounds above leave out, for there the edge is the
+    slower one: the tool starts or stops [mm]"""
 
     @property
     def count(self) -> int:
@@ -50,15 +55,13 @@ class Passes:
         return len(self.at)
 
 
-def find_passes(cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]) -> Passes:
-    """All passes that may touch a stock cylinder of this radius between these z.
-
-    Raises PartError where the work moves past the edge faster than the tool turns, so that a point could
-    meet one edge twice in a pass.
-    """
-    starts, ends = _runs(motion.tool_angle)
+def find_passes(
+    cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]
+) -> Passes:
+    """All passes that may touch a stock cylinder of this radius between these z, in the part frame."""
+    stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
     rows: list[tuple[Floats, Floats, Ints, Floats, Floats]] = []
-    for a, b in zip(starts, ends, strict=True):
+    for a, b in turning_runs(cutter, motion).T:
         angle = motion.tool_angle[a : b + 1]
         index = np.arange(a, b + 1, dtype=float)
         if angle[-1] < angle[0]:
@@ -76,22 +79,12 @@ def find_passes(cutter: Cutter, motion: CutterMotion, stock_radius: float, stock
     at, angle, gash, first, last = (np.concatenate(column) for column in zip(*rows, strict=True))
     order = np.lexsort((gash, angle, at))
     passes = _bounded(
-        cutter, motion, stock_radius, at[order], angle[order], gash[order], first[order], last[order]
+        cutter, motion, stock.radius, at[order], angle[order], gash[order], first[order], last[order]
     )
-    return _engaged(passes, cutter, motion, stock_radius, stock_z)
-
-
-def _runs(angle: Floats) -> tuple[Ints, Ints]:
-    """First and last samples of the stretches in which the tool turns one way."""
-    way = np.sign(np.diff(angle))
-    if not way.any():
-        none = np.zeros(0, dtype=np.int64)
-        return none, none
-    change = np.flatnonzero(np.diff(way)) + 1
-    starts = np.concatenate([[0], change])
-    ends = np.concatenate([change, [len(way)]])
-    turning = way[starts] != 0
-    return starts[turning], ends[turning]
+    samples = np.arange(len(motion.tool_angle), dtype=float)
+    centre = np.stack([np.interp(passes.at, samples, column) for column in motion.centre.T], axis=1)
+    keep = ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried)
+    return Passes(**{name: getattr(passes, name)[keep] for name in Passes.__dataclass_fields__})
 
 
 def _bounded(
@@ -106,10 +99,8 @@ def _bounded(
 ) -> Passes:
     """Attach to each pass the bounds that the culling proofs need."""
     samples = np.arange(len(motion.tool_angle), dtype=float)
-    work_rate = np.abs(np.diff(motion.work_angle))
     tool_rate = np.abs(np.diff(motion.tool_angle))
-    slide_rate = np.linalg.norm(np.diff(motion.centre, axis=0), axis=1)
-    speed = stock_radius * work_rate + slide_rate
+    speed = stock_speed(motion, stock_radius)
     # window of samples in which the edge is within REACH of the work's side
     way = np.where(motion.tool_angle[last.astype(int)] > motion.tool_angle[first.astype(int)], 1.0, -1.0)
     rising = np.maximum.accumulate(np.cumsum(np.concatenate([[0.0], tool_rate])))
@@ -119,20 +110,23 @@ def _bounded(
     a = np.minimum(np.floor(low), len(samples) - 2).astype(int)
     b = np.minimum(np.maximum(np.ceil(high).astype(int), a + 1), len(samples) - 1)
     path = np.concatenate([[0.0], np.cumsum(speed)])
-    travel = path[b] - path[a]
-    # the edge's slowest crossing is at the innermost radius that still cuts
-    inner = max(cutter.profile.root, 0.5 * cutter.radius)
-    moving = tool_rate > 0
-    across = np.where(moving, np.maximum(inner * tool_rate - speed, 0.0), np.nan)
+    slides = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(motion.centre, axis=0), axis=1))])
+    inner = inner_radius(cutter)
+    across = np.maximum(inner * tool_rate - speed, 0.0)
+    slow = across == 0.0
+    creep = np.concatenate([[0.0], np.cumsum(np.where(slow, speed, 0.0))])
+    # a jump counts by the slower side
+    slower = np.minimum(across, np.append(across[1:], across[-1]))
     jump = stock_radius * _jumps(motion.work_angle) + np.linalg.norm(_jumps(motion.centre), axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        slant = speed / across
-        jump = jump + np.where(moving, slant, 0.0) * inner * _jumps(motion.tool_angle)
+        slant = np.where(slow, 0.0, speed / across)
+        steep = speed / slower
+        jump = (1.0 + steep) * jump + steep * inner * _jumps(motion.tool_angle)
         bounds = {
             "slant": slant,
-            "turn": work_rate / across,
-            "jolt": jump / across,
-            "samples": 1.0 / across,
+            "turn": np.where(slow, 0.0, np.abs(np.diff(motion.work_angle)) / across),
+            "jolt": jump / slower,
+            "samples": np.where(slow, 0.0, 1.0 / across),
         }
     ends = motion.tool_angle[np.stack([first, last], axis=1).astype(int)]
     return Passes(
@@ -141,8 +135,10 @@ def _bounded(
         shift=cutter.gash_shift[gash],
         first=first,
         last=last,
-        travel=travel,
+        travel=path[b] - path[a],
+        carried=slides[b] - slides[a],
         run_angle=np.sort(ends, axis=1),
+        creep=creep[b] - creep[a],
         **{name: _window_max(values, a, b) for name, values in bounds.items()},
     )
 
@@ -165,29 +161,3 @@ def _window_max(values: Floats, a: Ints, b: Ints) -> Floats:
         here = level == k
         out[here] = np.maximum(row[a[here]], row[b[here] - 2**k])
     return out
-
-
-def _engaged(
-    passes: Passes, cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]
-) -> Passes:
-    """Drop the passes whose tool stays clear of the stock cylinder."""
-    samples = np.arange(len(motion.tool_angle), dtype=float)
-    centre = np.stack([np.interp(passes.at, samples, motion.centre[:, k]) for k in range(3)], axis=1)
-    reach = cutter.radius + passes.travel
-    middle = np.array([0.0, 0.0, 0.5 * (stock_z[0] + stock_z[1])])
-    half = 0.5 * (stock_z[1] - stock_z[0])
-    axis = motion.basis[2]
-    offset = middle - centre
-    if abs(axis[2]) > 0.9:  # tool axis along the work axis: distance between two parallel axes
-        clear = np.hypot(offset[:, 0], offset[:, 1]) - stock_radius > reach + half * math.hypot(*axis[:2])
-    else:
-        # the tool as a cylinder about a line across the work: z band and x distance are both needed
-        slope = np.abs(axis[2]) * 2.0 * stock_radius
-        clear = (np.abs(offset[:, 2]) - half > reach + slope) | (np.abs(offset[:, 0]) - stock_radius > reach)
-    keep = ~clear
-    if np.isinf(passes.slant[keep]).any():
-        raise PartError(
-            "the stock moves past the cutting edges faster than the tool turns; such a cut is not modelled",
-            remedy="check S, the ratio T:L or P:Q, and the feed",
-        )
-    return Passes(**{name: getattr(passes, name)[keep] for name in Passes.__dataclass_fields__})

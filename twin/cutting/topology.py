@@ -1,7 +1,8 @@
 """How the surface passes a cell: for each pattern of corner signs, which crossed edges belong together.
 
-Each connected sheet in a cell gets a vertex of its own (dual marching cubes), so the mesh is a 2-manifold.
-On a face with four crossings the removed corners are kept apart, which both cells at the face see alike.
+Each connected sheet in a cell gets a vertex of its own (dual marching cubes), so the mesh is closed and
+oriented. On a face with four crossings the removed corners are kept apart, which both cells at the face see
+alike. Where all four belong to one sheet in both cells, four faces meet at one edge; manifold3d parts them.
 """
 
 import itertools

@@ -88,7 +88,7 @@ def _polygon_map(solid: Solid, result: PolygonResult, value: Floats) -> None:
 
 
 def _facing(solid: Solid, normal: Floats, ranged: np.ndarray) -> np.ndarray:
-    """Mark the vertices (n,) of mesh faces whose corners are all in range and that face as `normal` (n, 3) does."""
+    """Mark the vertices (n,) of mesh faces that lie in range and face as `normal` (n, 3) does."""
     faces: Ints = solid.faces[ranged[solid.faces].all(axis=1)]
     a, b, c = (solid.vertices[faces[:, i]] for i in range(3))
     square = np.cross(b - a, c - a)

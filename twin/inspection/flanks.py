@@ -60,9 +60,7 @@ class Placed:
         return steps % self.gear.teeth, angle + steps * pitch
 
 
-def deviations(
-    crossings: Crossings, heights: Floats, radii: Floats, placed: Placed
-) -> tuple[Floats, Floats]:
+def deviations(crossings: Crossings, heights: Floats, radii: Floats, placed: Placed) -> tuple[Floats, Floats]:
     """Return the left and right flanks' deviations [µm], (planes, circles, z) each, + = material outside.
 
     NaN where a flank does not cross a circle exactly once.
@@ -74,7 +72,9 @@ def deviations(
     value = 1000 * placed.gear.base_radius * side * offset
     shape = (len(heights), len(radii), placed.gear.teeth)
     place = np.ravel_multi_index((crossings.plane, crossings.circle, tooth), shape)
-    left, right = (_table(place[chosen], value[chosen], shape) for chosen in (crossings.left, ~crossings.left))
+    left, right = (
+        _table(place[chosen], value[chosen], shape) for chosen in (crossings.left, ~crossings.left)
+    )
     return left, right
 
 
@@ -99,13 +99,14 @@ def locate(solid: Solid, gear: Involute, *, phase: float, middle: float, low: fl
 
 def pitch_deviations(solid: Solid, placed: Placed) -> tuple[Floats, Floats]:
     """Return left and right flanks' places on the measuring circle (z,) [µm along the base tangent]."""
-    left, right = _on_circles(
+    left, right = on_circles(
         solid, placed, np.array([placed.middle]), np.array([placed.gear.measuring_diameter / 2])
     )
     return left[0, 0], right[0, 0]
 
 
-def _on_circles(solid: Solid, placed: Placed, heights: Floats, radii: Floats) -> tuple[Floats, Floats]:
+def on_circles(solid: Solid, placed: Placed, heights: Floats, radii: Floats) -> tuple[Floats, Floats]:
+    """Measure all flanks on circles, see `deviations`; heights and radii [mm] ascending."""
     faces = faces_at_height(solid, float(heights[0])) if len(heights) == 1 else solid.faces
     if len(radii) == 1:
         faces = faces_at_radius(solid, float(radii[0]), faces=faces)
@@ -119,16 +120,18 @@ def measure_flanks(solid: Solid, placed: Placed, *, tip_diameter: float) -> tupl
     form, tip = (float(gear.roll_length(d)) for d in (gear.form_diameter, tip_diameter))
     profile_range = (form, form + TIP_LIMIT * (tip - form))
     roll = np.linspace(form, form + 0.99 * (tip - form), POINTS)
-    profiles = _on_circles(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
+    profiles = on_circles(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
     margin = 0.5 * (placed.high - placed.low) / POINTS
     heights = np.linspace(placed.low + margin, placed.high - margin, POINTS)
-    helices = _on_circles(solid, placed, heights, np.array([gear.measuring_diameter / 2]))
+    helices = on_circles(solid, placed, heights, np.array([gear.measuring_diameter / 2]))
     pitches = pitch_deviations(solid, placed)
-    # seen along z a right-hand helix leans to +angle: on left flanks that is material, on right flanks lack of it
+    # along z a right-hand helix leans to +angle: material on left flanks, lack of it on right ones
     hand = -1.0 if gear.helix < 0 else 1.0
     left, right = (
         _flank(
-            profile=[_trace(k, roll, profiles[i][0, :, k], profile_range, 1.0) for k in traced_teeth(gear.teeth)],
+            profile=[
+                _trace(k, roll, profiles[i][0, :, k], profile_range, 1.0) for k in traced_teeth(gear.teeth)
+            ],
             helix=[
                 _trace(k, heights, helices[i][:, 0, k], placed.helix_range, hand * sense)
                 for k in traced_teeth(gear.teeth)

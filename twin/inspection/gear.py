@@ -8,15 +8,16 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import fminbound
 
 from twin.errors import PartError
-from twin.inspection.flanks import TIP_LIMIT, Placed, locate, measure_flanks
+from twin.inspection.balls import choose_ball, measure_balls, over_balls
+from twin.inspection.flanks import TIP_LIMIT, locate, measure_flanks
 from twin.inspection.involute import Involute, geometry, involute
 from twin.inspection.nominal import GearNominal
-from twin.inspection.recognise import Outline
+from twin.inspection.recognise import Outline, phase_sums
 from twin.inspection.result import Flank, GearResult, Trace
-from twin.inspection.sections import circle_crossings, outer_outlines, plane_segments
+from twin.inspection.sections import circle_crossings, plane_segments_in_parts
 from twin.inspection.size import measure_span, tip_and_root_radii
 from twin.inspection.solid import Floats, Solid
 
@@ -26,10 +27,12 @@ DEPTH = (0.8, 4.0)
 """possible depths of gear teeth, in modules"""
 MOST_SHIFT = 1.5
 """largest possible |x| of a tooth thickness"""
+# fmt: off
 STANDARD_MODULES = (
-    (0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.125, 1.25, 1.375, 1.5, 1.75, 2, 2.25, 2.5, 2.75, 3, 3.25, 3.5)
-    + (3.75, 4, 4.5, 5, 5.5, 6, 6.5, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 25, 28, 32, 36, 40, 45, 50)
+    0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.125, 1.25, 1.375, 1.5, 1.75, 2, 2.25, 2.5, 2.75, 3, 3.25,
+    3.5, 3.75, 4, 4.5, 5, 5.5, 6, 6.5, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 25, 28, 32, 36, 40, 45, 50,
 )
+# fmt: on
 """ISO 54, both series, and the usual ones below 1 [mm]"""
 
 
@@ -77,7 +80,7 @@ def find_gear(solid: Solid, outline: Outline, *, pressure_deg: float = 20.0) -> 
     if len(radius) < 10:
         raise PartError(f"{outline.count} teeth stand about the axis, but their flanks have holes")
     found = _fit(outline, radius, half_tooth, pressure_deg)
-    # the involute may begin higher or reach lower than assumed: fit again over what this base radius makes of it
+    # the involute may begin higher or reach lower than assumed: fit again from where this fit has it begin
     form = geometry(_as_nominal(found, outline)).form_diameter / 2
     fraction = max((form - outline.root_radius) / outline.depth, 0.05)
     if fraction < 0.85:
@@ -110,6 +113,16 @@ def measure_gear(
     span, reason = measure_span(solid, placed, k, tip_radius=tip_diameter / 2)
     if span is None:
         unmeasured["span_mm"] = reason
+    ball = reference.pin_diameter_mm
+    if ball is None:
+        ball = choose_ball(gear, tip_radius=tip_diameter / 2)
+    centres, reason = None, "no usual ball touches the flanks between form and tip diameter"
+    if ball is not None:
+        centres, reason = measure_balls(solid, placed, ball, tip_radius=tip_diameter / 2)
+    if centres is None:
+        unmeasured |= {"over_pins_mm": reason, "runout_um": reason}
+        if ball is None:
+            unmeasured["pin_diameter_mm"] = reason
     twist = gear.twist + _twist_error(left.helix, right.helix, gear)
     helix_deg = math.degrees(math.asin(min(max(twist * gear.teeth * gear.module / 2, -1.0), 1.0)))
     form, tip = (float(gear.roll_length(d)) for d in (gear.form_diameter, tip_diameter))
@@ -124,6 +137,9 @@ def measure_gear(
         root_diameter_mm=2 * float(gaps.mean()),
         span_teeth=k,
         span_mm=span,
+        pin_diameter_mm=ball,
+        over_pins_mm=over_balls(centres, ball) if centres is not None and ball is not None else None,
+        runout_um=1000 * float(np.ptp(centres)) if centres is not None else None,
         left=left,
         right=right,
         reference=reference,
@@ -141,11 +157,11 @@ def measure_gear(
 def _without_slopes(flank: Flank, found: Found, fit: GearNominal, unmeasured: dict[str, str]) -> Flank:
     """Take out what a best fit cannot show: the slopes it was fitted to."""
     if fit.normal_module_mm == found.module:
-        reason = f"no nominal, and no standard module near {found.module:.4f} mm: measured against its own best fit"
+        reason = f"no nominal and no standard module near {found.module:.4f} mm: traced against the best fit"
         unmeasured |= {"profile_slope_um": reason, "profile_total_um": reason}
         flank = replace(flank, profile_slope_um=None, profile_total_um=None)
     if fit.helix_angle_deg != 0.0:
-        reason = "no nominal helix angle: measured against its own best fit"
+        reason = "no nominal helix angle: traced against the best fit"
         unmeasured |= {"helix_slope_um": reason, "helix_total_um": reason}
         flank = replace(flank, helix_slope_um=None, helix_total_um=None)
     return flank
@@ -162,26 +178,25 @@ def _twist_error(left: tuple[Trace, ...], right: tuple[Trace, ...], gear: Involu
 
 
 def _thickness(solid: Solid, outline: Outline, low: float, high: float) -> tuple[Floats, Floats]:
-    """Return radii (n,) [mm] between fractions of the depth, and the mean half angle of the teeth there [rad].
+    """Return radii (n,) [mm] between fractions of the depth and mean half angles of the teeth there [rad].
 
     The angles are (planes, n), of planes spread over the width.
     """
     radii = outline.root_radius + np.linspace(low, high, 80) * outline.depth
     reach = 0.4 * (outline.high - outline.low)
     heights = outline.middle + reach * np.linspace(-1, 1, 9)
-    crossings = circle_crossings(outer_outlines(plane_segments(solid, heights)), radii)
-    circles = len(heights) * len(radii)
-    place = crossings.plane * len(radii) + crossings.circle
-    turn = np.exp(1j * outline.count * crossings.angle)
-    count = np.bincount(place, minlength=circles)
-    left, right = (
-        np.bincount(place[side], weights=turn[side].real, minlength=circles)
-        + 1j * np.bincount(place[side], weights=turn[side].imag, minlength=circles)
-        for side in (crossings.left, ~crossings.left)
-    )
-    half = np.mod(np.angle(left * right.conj()), 2 * math.pi) / (2 * outline.count)
-    whole = (count == 2 * outline.count).reshape(len(heights), len(radii)).all(axis=0)
-    return radii[whole], half.reshape(len(heights), len(radii))[:, whole]
+    rows = []
+    for part in plane_segments_in_parts(solid, heights):
+        crossings = circle_crossings(part, radii)
+        shape = (len(part.heights), len(radii))
+        place = crossings.plane * len(radii) + crossings.circle
+        left, right = phase_sums(crossings, outline.count, place, math.prod(shape))
+        half = np.mod(np.angle(left * right.conj()), 2 * math.pi) / (2 * outline.count)
+        count = np.bincount(place, minlength=math.prod(shape))
+        rows.append((half.reshape(shape), (count == 2 * outline.count).reshape(shape)))
+    half, whole = (np.concatenate(column) for column in zip(*rows, strict=True))
+    everywhere = whole.all(axis=0)
+    return radii[everywhere], half[:, everywhere]
 
 
 def _fit(outline: Outline, radius: Floats, half_tooth: Floats, pressure_deg: float) -> Found:
@@ -191,12 +206,13 @@ def _fit(outline: Outline, radius: Floats, half_tooth: Floats, pressure_deg: flo
     def misfit(base: float) -> float:
         return float(np.var(mean + involute(np.arccos(np.minimum(base / radius, 1.0)))))
 
-    best = minimize_scalar(misfit, bounds=(0.5 * radius[0], radius[-1]), options={"xatol": 1e-9})
-    base = float(best.x)
+    base = np.asarray(fminbound(misfit, 0.5 * radius[0], radius[-1], xtol=1e-9)).item()
     alpha = math.radians(pressure_deg)
     sine = math.sin(math.atan(base * outline.twist)) / math.cos(alpha)
     if abs(sine) >= math.sin(math.radians(80.0)):
-        raise PartError(f"{outline.count} flutes of too short a lead ({2 * math.pi / outline.twist:+.2f} mm) for gear teeth")
+        raise PartError(
+            f"{outline.count} flutes of a lead of {2 * math.pi / outline.twist:+.2f} mm, too short for a gear"
+        )
     beta = math.asin(sine)
     alpha_t = math.atan(math.tan(alpha) / math.cos(beta))
     module = 2 * base * math.cos(beta) / (outline.count * math.cos(alpha_t))
@@ -219,7 +235,7 @@ def _fit(outline: Outline, radius: Floats, half_tooth: Floats, pressure_deg: flo
 
 
 def _as_nominal(found: Found, outline: Outline) -> GearNominal:
-    """Return the nominal a found gear is measured against: standard module and spur where it is that close."""
+    """Return the nominal to measure a found gear against: standard module, spur where it is close to that."""
     nearest = min(STANDARD_MODULES, key=lambda m: abs(m - found.module))
     module = nearest if abs(found.module - nearest) <= 0.01 * nearest else found.module
     beta = 0.0

@@ -11,7 +11,7 @@ from twin.inspection.polygon import measure_polygon
 from twin.inspection.recognise import MOST_SIDES, Form, Outline, recognise
 from twin.inspection.result import GearResult, Inspection, Verdict
 from twin.inspection.solid import Solid, check_solid
-from twin.inspection.tolerances import CLASSES, across_flats_limits
+from twin.inspection.tolerances import across_flats_limits
 
 
 def inspect(vertices: ArrayLike, faces: ArrayLike, nominal: Nominal | None = None) -> Inspection:
@@ -34,7 +34,7 @@ def inspect(vertices: ArrayLike, faces: ArrayLike, nominal: Nominal | None = Non
     elif outline.form is Form.POLYGON and not isinstance(nominal, GearNominal):
         result = _inspect_polygon(solid, outline, nominal)
     else:
-        result = _nothing(_unexpected(outline), nominal)
+        result = _nothing(_unexpected(outline, nominal), nominal)
     return result
 
 
@@ -42,11 +42,6 @@ def _check_nominal(nominal: Nominal | None) -> None:
     """An impossible nominal is refused before anything is measured."""
     if isinstance(nominal, GearNominal):
         geometry(nominal)
-        if nominal.accuracy_class is not None and nominal.accuracy_class not in CLASSES:
-            raise InputError(
-                f"nominal gear: accuracy_class is {nominal.accuracy_class}",
-                remedy=f"valid is {CLASSES[0]} to {CLASSES[-1]}",
-            )
     elif isinstance(nominal, PolygonNominal):
         across_flats_limits(nominal.across_flats_mm, nominal.tolerance)
         if not 2 <= nominal.number_of_sides <= MOST_SIDES:
@@ -98,7 +93,9 @@ def _ruined(gear: GearResult) -> str:
 
 def _inspect_polygon(solid: Solid, outline: Outline, nominal: PolygonNominal | None) -> Inspection:
     if nominal is not None and outline.count != nominal.number_of_sides:
-        return _nothing(f"a polygon with {outline.count} sides was found, not {nominal.number_of_sides}", nominal)
+        return _nothing(
+            f"a polygon with {outline.count} sides was found, not {nominal.number_of_sides}", nominal
+        )
     try:
         polygon, unmeasured = measure_polygon(solid, outline, nominal)
     except PartError as fault:
@@ -113,9 +110,16 @@ def _inspect_polygon(solid: Solid, outline: Outline, nominal: PolygonNominal | N
     )
 
 
-def _unexpected(outline: Outline) -> str:
+def _unexpected(outline: Outline, nominal: Nominal | None) -> str:
     """Say what was found where something else was named."""
     if outline.form is Form.NEITHER:
+        if isinstance(nominal, GearNominal) and outline.tip_radius > 0:
+            gear, largest = geometry(nominal), 2 * outline.tip_radius
+            if largest < gear.tip_diameter - gear.module:
+                return (
+                    f"{outline.reason}; the teeth are cut away: the largest diameter left is "
+                    f"{largest:.2f} mm where the tips should stand at {gear.tip_diameter:.2f} mm"
+                )
         return outline.reason
     what = "teeth" if outline.form is Form.GEAR else "flat sides"
     return f"a part with {outline.count} {what} was found"

@@ -83,9 +83,36 @@ class Involute:
     def span(self, k: int) -> float:
         """Return the nominal span W_k [mm] over k teeth."""
         turns = (k - 0.5) * math.pi + self.teeth * float(involute(self.transverse_pressure))
-        return self.module * (
-            math.cos(self.pressure) * turns + 2 * self.shift * math.sin(self.pressure)
-        )
+        return self.module * (math.cos(self.pressure) * turns + 2 * self.shift * math.sin(self.pressure))
+
+    def ball_angle(self, ball: float, lift: Floats | float = 0.0) -> Floats:
+        """Return alpha_K [rad], the transverse pressure angle at the centre of a ball [mm] in a gap.
+
+        `lift` [rad] is what both flanks of the gap have too much, over the base radius; any shape.
+
+        Raises:
+            ValueError: a ball so small that its centre falls inside the base circle.
+
+        """
+        gap = math.pi / self.teeth - float(self.half_tooth(self.base_radius))
+        return inverse_involute(ball / (self.teeth * self.module * math.cos(self.pressure)) - gap + lift)
+
+
+def inverse_involute(value: Floats | float) -> Floats:
+    """Return the angles [rad] whose involutes are `value`.
+
+    Raises:
+        ValueError: a value that is not positive.
+
+    """
+    wanted = np.asarray(value, dtype=np.float64)
+    if not (wanted > 0).all():
+        raise ValueError(f"no angle has the involute {wanted.min()}")
+    # both bounds lie above the solution, and the involute is convex: Newton comes down to it
+    angle = np.minimum(np.cbrt(3 * wanted), np.arctan(wanted + math.pi / 2))
+    for _ in range(30):
+        angle = angle - (involute(angle) - wanted) / np.tan(angle) ** 2
+    return angle
 
 
 def involute(angle: Floats | float) -> Floats:
@@ -138,6 +165,14 @@ def _check(nominal: GearNominal) -> None:
         ("helix_angle_deg", nominal.helix_angle_deg, -80.0, 80.0),
         ("normal_pressure_angle_deg", nominal.normal_pressure_angle_deg, 5.0, 45.0),
         ("profile_shift", nominal.profile_shift, -2.0, 2.0),
+        (
+            "pin_diameter_mm",
+            1.0 if nominal.pin_diameter_mm is None else nominal.pin_diameter_mm,
+            0.01,
+            1000.0,
+        ),
+        ("accuracy_class", 1 if nominal.accuracy_class is None else nominal.accuracy_class, 1, 11),
+        ("face_width_mm", 1.0 if nominal.face_width_mm is None else nominal.face_width_mm, 0.01, 10_000.0),
         ("dedendum_factor", nominal.dedendum_factor, 0.1, 5.0),
         ("tip_radius_factor", nominal.tip_radius_factor, 0.0, 1.0),
     )
@@ -158,7 +193,11 @@ def _form_diameter(nominal: GearNominal, alpha_t: float, d: float) -> float:
         return math.hypot(roll, d_b)
     # Undercut: the path of the rounded rack corner, turned into the gear frame, cuts the involute off.
     phi = np.linspace(alpha, math.pi / 2, 4000)  # direction of the contact normal, in the rack's normal plane
-    centre = math.pi * m / 4 - nominal.dedendum_factor * m * math.tan(alpha) - rho * (1 - math.sin(alpha)) / math.cos(alpha)
+    centre = (
+        math.pi * m / 4
+        - nominal.dedendum_factor * m * math.tan(alpha)
+        - rho * (1 - math.sin(alpha)) / math.cos(alpha)
+    )
     across = (centre + rho * np.cos(phi)) / math.cos(beta)
     depth = nominal.dedendum_factor * m - x * m - rho * (1 - np.sin(phi))
     travel = depth * np.cos(phi) * math.cos(beta) / np.sin(phi) - across

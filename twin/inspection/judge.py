@@ -127,6 +127,8 @@ def grade_gear(gear: GearResult) -> tuple[dict[str, int | None], dict[str, float
         return {}, {}, [f"not graded: {sentence}" for sentence in outside]
     values = worst_values(gear)
     classes = {item: class_reached(item, size, value) for item, value in values.items()}
+    if gear.runout_um is not None:
+        classes["runout"] = class_reached("runout", size, gear.runout_um)
     reached = [classes.get(item) for item in GRADED]
     known = [a for a in reached if a is not None]
     classes["overall"] = max(known) if len(known) == len(reached) else None
@@ -150,22 +152,28 @@ def judge_gear(
     low, high = gear.teeth_range_mm
     wrong = []
     if not whole:
-        wrong.append(f"the teeth are cut to full depth only from z = {low:.2f} to {high:.2f} mm, not over the whole width")
-    if nominal is not None and nominal.face_width_mm is not None and high - low < 0.98 * nominal.face_width_mm:
+        wrong.append(f"the teeth have their full depth only from z = {low:.2f} to {high:.2f} mm")
+    if (
+        nominal is not None
+        and nominal.face_width_mm is not None
+        and high - low < 0.98 * nominal.face_width_mm
+    ):
         wrong.append(f"the teeth are {high - low:.2f} mm wide instead of {nominal.face_width_mm:g} mm")
-    graded = nominal is not None and nominal.accuracy_class is not None
+    allowed = nominal.accuracy_class if nominal is not None else None
     holes = [item for item in GRADED if item not in worst_values(gear)]
-    if graded and classes and holes:
-        wrong += [f"{_WORDS[item]} cannot be measured: {unmeasured.get(item + '_um', HOLES)}" for item in holes]
+    if allowed is not None and classes and holes:
+        wrong += [
+            f"{_WORDS[item]} cannot be measured: {unmeasured.get(item + '_um', HOLES)}" for item in holes
+        ]
     result = replace(gear, accuracy_class=classes, tolerances_um=tolerances)
     if not classes:
         return result, Verdict.OUT if wrong else Verdict.NOT_GRADED, wrong + exceeded
     wrong += exceeded
     if wrong:
         return result, Verdict.OUT, wrong
-    if not graded:
+    if allowed is None:
         return result, Verdict.NOT_GRADED, ["no accuracy class was named to judge by"]
-    return result, Verdict.IN, [f"all measured items hold class {nominal.accuracy_class} of ISO 1328-1:2013"]
+    return result, Verdict.IN, [f"all measured items hold class {allowed} of ISO 1328-1:2013"]
 
 
 def judge_polygon(
@@ -205,7 +213,8 @@ def _shape_of_faces(polygon: PolygonResult) -> list[str]:
     words = []
     if polygon.bow_um < -CONCAVE_ABOVE:
         words.append(
-            f"the faces are concave by {-polygon.bow_um:.1f} µm: {polygon.across_flats_mm:.3f} mm at mid-face, "
+            f"the faces are concave by {-polygon.bow_um:.1f} µm: "
+            f"{polygon.across_flats_mm:.3f} mm across flats at the middle of the faces, "
             "but a caliper touches near the corners; a ratio Q/P of 2 makes them convex"
         )
     return words

@@ -17,7 +17,7 @@ from twin.errors import PartError
 from twin.inspection.nominal import PolygonNominal
 from twin.inspection.recognise import Outline
 from twin.inspection.result import Face, PolygonResult
-from twin.inspection.sections import outer_outlines, plane_segments
+from twin.inspection.sections import outer_outlines, plane_segments_in_parts
 from twin.inspection.sections import outline as chained_outline
 from twin.inspection.solid import Floats, Solid
 
@@ -35,6 +35,8 @@ ROCK = math.radians(5.0)
 """how far a caliper's jaws may stand from a face's direction"""
 IRREGULAR = 0.2
 """spread of the faces' distances, as part of their mean, from which there is no regular polygon"""
+LOBED = 0.6
+"""bow, as part of that of a round bar, from which a face is no face"""
 UNTWISTED = 1e-3
 """a twist below this [degrees/mm] has no hand"""
 
@@ -48,13 +50,17 @@ def measure_polygon(
         the result, and for every result key that cannot be measured the reason.
 
     Raises:
-        PartError: faces at such different distances that there is no regular polygon.
+        PartError: lobes instead of faces, faces at too different distances, or not about the axis.
 
     """
     sides = outline.count
     heights = outline.low + (outline.high - outline.low) * np.linspace(END, 1 - END, PLANES)
-    segments = outer_outlines(plane_segments(solid, heights))
-    sections = [chained_outline(segments, plane) for plane in range(PLANES)]
+    grain = outline.tip_radius * math.pi / sides / POINTS
+    sections = [
+        _subdivided(chained_outline(outer, plane), grain)
+        for outer in map(outer_outlines, plane_segments_in_parts(solid, heights))
+        for plane in range(len(outer.heights))
+    ]
     directions = _directions(outline, heights)
     faces = tuple(_face(outline, heights, sections, directions[:, k]) for k in range(sides))
     corner_radii = np.array([_corner_radii(p, d) for p, d in zip(sections, directions, strict=True)])
@@ -62,14 +68,15 @@ def measure_polygon(
     unmeasured = {}
     least = largest = None
     if sides % 2 == 0:
-        widths = [
-            _caliper(p, d[: sides // 2]) for p, d in zip(sections, directions, strict=True)
-        ]
+        widths = [_caliper(p, d[: sides // 2]) for p, d in zip(sections, directions, strict=True)]
         least, largest = float(np.min(widths)), float(np.max(widths))
     else:
         unmeasured["across_flats_caliper_mm"] = f"with {sides} sides no face stands opposite another"
     found = np.array([f.direction_deg for f in faces])
     mid = np.array([f.mid_distance_mm for f in faces])
+    bow = float(np.mean([f.bow_um for f in faces]))
+    if bow / 1000 > LOBED * _arc_height(float(mid.mean()), float(np.mean([f.width_mm for f in faces]))):
+        raise PartError(f"{sides} lobes stand about the axis, rounder than any turned face: no polygon")
     if np.ptp(mid) > IRREGULAR * mid.mean():
         raise PartError(
             f"{sides} faces stand about the axis, but {mid.min():.3f} to {mid.max():.3f} mm from it: "
@@ -84,7 +91,7 @@ def measure_polygon(
         across_flats_caliper_least_mm=least,
         across_corners_mm=float(across_corners.mean()),
         across_corners_least_mm=float(across_corners.min()),
-        bow_um=float(np.mean([f.bow_um for f in faces])),
+        bow_um=bow,
         flatness_um=max(f.flatness_um for f in faces),
         twist_deg_per_mm=twist,
         hand="none" if abs(twist) < UNTWISTED else "right" if twist > 0 else "left",
@@ -96,6 +103,15 @@ def measure_polygon(
         reference=nominal,
     )
     return result, unmeasured
+
+
+def _subdivided(points: Floats, grain: float) -> Floats:
+    """Return a closed outline (n, 2) with points along its chords, at most `grain` [mm] apart."""
+    chord = np.roll(points, -1, axis=0) - points
+    pieces = np.maximum(np.ceil(np.hypot(*chord.T) / grain).astype(np.int64), 1)
+    row = np.repeat(np.arange(len(points)), pieces)
+    part = (np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[row]
+    return points[row] + part[:, None] * chord[row]
 
 
 def _directions(outline: Outline, heights: Floats) -> Floats:
@@ -112,7 +128,7 @@ def _face(outline: Outline, heights: Floats, sections: list[Floats], direction: 
     pitch = 2 * math.pi / outline.count
     views = [_view(p, d, pitch) for p, d in zip(sections, direction, strict=True)]
     ends = np.median([_edges(v, 0.01 * outline.depth) for v in views], axis=0)
-    y = np.linspace(*((1 - EDGE) * ends[:, 0]), POINTS)
+    y = (1 - EDGE) * np.linspace(ends[0, 0], ends[1, 0], POINTS)
     x = np.array([np.interp(y, v[:, 1], v[:, 0]) for v in views])
     width = float(np.abs(ends[:, 0]).max())
     level = np.polynomial.legendre.legvander(y / width, DEGREE)
@@ -132,6 +148,7 @@ def _face(outline: Outline, heights: Floats, sections: list[Floats], direction: 
     return Face(
         direction_deg=math.degrees(np.interp(outline.middle, heights, direction) - math.atan(slope)),
         distance_mm=float(distance * math.cos(math.atan(slope))),
+        width_mm=right - left,
         mid_distance_mm=float(profile(0.0)),
         bow_um=1000 * float(profile(0.0) - chord),
         flatness_um=1000 * float(np.ptp(rest)),
@@ -153,6 +170,8 @@ def _edges(view: Floats, margin: float) -> Floats:
     ends = []
     for sign in (-1, 1):
         side = sign * view[:, 1] >= 0
+        if not side.any():
+            raise PartError("the outline does not go round the axis at every height: no polygon")
         y, r = view[side, 1][::sign], radius[side][::sign]
         beyond = int(np.argmax(r >= r.max() - margin))
         ends.append((y[beyond], r.max()))
@@ -182,18 +201,27 @@ def _corner_radii(points: Floats, directions: Floats) -> Floats:
 
 
 def _caliper(points: Floats, directions: Floats) -> list[float]:
-    """Return the width [mm] parallel jaws read near each direction: least where they lie on an edge of the hull."""
-    hull = ConvexHull(points)
-    corners = points[hull.vertices]
-    normals = hull.equations[:, :2]
-    widths = -hull.equations[:, 2] - (corners @ normals.T).min(axis=0)
-    angle = np.arctan2(normals[:, 1], normals[:, 0])
+    """Return the least width [mm] parallel jaws read near each direction: one lies on an edge of the hull."""
+    corners = points[ConvexHull(points).vertices]  # counter-clockwise
+    edge = np.roll(corners, -1, axis=0) - corners
+    normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.hypot(*edge.T)[:, None]
+    angle = np.arctan2(normal[:, 1], normal[:, 0])
+    order = np.argsort(angle)
+    # the other jaw touches the corner between the edges that face it
+    behind = np.searchsorted(angle[order], np.where(angle > 0, angle - math.pi, angle + math.pi))
+    other = corners[order[behind % len(order)]]
+    widths = np.einsum("ij,ij->i", normal, corners - other)
     readings = []
     for direction in directions:
         # either jaw may be the one that lies flat
         away = np.abs(np.mod(angle - direction + math.pi / 2, math.pi) - math.pi / 2)
         readings.append(float(widths[away <= max(ROCK, float(away.min()))].min()))
     return readings
+
+
+def _arc_height(radius: float, width: float) -> float:
+    """Return how high a circle rises over a chord [mm]."""
+    return radius * (1 - math.cos(math.asin(min(width / 2 / radius, 1.0))))
 
 
 def _off_axis(directions: Floats, distances: Floats) -> float:

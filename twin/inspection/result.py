@@ -47,7 +47,7 @@ class Flank:
     profile: tuple[Trace, ...]
     helix: tuple[Trace, ...]
     pitch_um: Floats
-    """(z,) single pitch deviation along the measuring circle, from each tooth to the next; NaN: no such flank"""
+    """(z,) single pitch deviation on the measuring circle, from each tooth to the next; NaN: no flank"""
     cumulative_um: Floats
     """(z,) place of each flank against tooth 1, + = further on in the sense of numbering"""
     profile_slope_um: float | None
@@ -77,6 +77,12 @@ class GearResult:
     root_diameter_mm: float
     span_teeth: int | None
     span_mm: float | None
+    pin_diameter_mm: float | None
+    """of the balls"""
+    over_pins_mm: float | None
+    """mean over opposite balls"""
+    runout_um: float | None
+    """F_r, range of the depth of a ball in every gap"""
     left: Flank
     right: Flank
     reference: GearNominal
@@ -103,6 +109,8 @@ class Face:
     """of its outward normal at mid-length, from the part's +X counter-clockwise"""
     distance_mm: float
     """of the least-squares plane from the axis"""
+    width_mm: float
+    """from edge to edge"""
     mid_distance_mm: float
     """of the middle of the face from the axis"""
     bow_um: float
@@ -118,7 +126,7 @@ class PolygonResult:
 
     number_of_sides: int
     across_flats_mm: float
-    """mean width at mid-face: between opposed least-squares planes, plus what their faces bow out at the middle"""
+    """mean width at mid-face: opposed least-squares planes, plus what the faces bow out there"""
     across_flats_planes_mm: float
     """mean width between opposed plain least-squares planes"""
     across_flats_caliper_mm: float | None

@@ -5,13 +5,17 @@ and where that crossing crosses a circle about the work axis. A point on a plane
 outside it, so that closed meshes give closed outlines and crossings come in pairs.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from twin.inspection.solid import Floats, Ints, Solid
+from twin.inspection.solid import Floats, Ints, Solid, corner_limits
+
+PART = 1_000_000
+"""about so many segments are handled at a time"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +46,6 @@ class Segments:
             end_node=self.end_node[mask],
         )
 
-
     def scaled(self, factor: Floats) -> "Segments":
         """Return the sections scaled about the axis, `factor` (k,) for each plane."""
         each = factor[self.plane, None]
@@ -72,9 +75,12 @@ class Crossings:
 
 def plane_segments(solid: Solid, heights: Floats, *, faces: Ints | None = None) -> Segments:
     """Cut a solid by the planes z = heights (k,), ascending; `faces` (m, 3) restricts it to some faces."""
-    faces = solid.faces if faces is None else faces
     z = solid.vertices[:, 2]
-    first, count = _spans(*_face_limits(z, faces), heights)
+    if faces is None:
+        faces, limits = solid.faces, (solid.face_low, solid.face_high)
+    else:
+        limits = corner_limits(z, faces)
+    first, count = _spans(*limits, heights)
     face, plane = _expand(first, count)
     h = heights[plane]
     a, b, c = (faces[face, i] for i in range(3))
@@ -92,6 +98,20 @@ def plane_segments(solid: Solid, heights: Floats, *, faces: Ints | None = None) 
     return Segments(
         heights=heights, plane=plane, start=start, end=end, start_node=start_node, end_node=end_node
     )
+
+
+def plane_segments_in_parts(solid: Solid, heights: Floats) -> Iterator[Segments]:
+    """Cut a solid by planes as `plane_segments` does, a few planes at a time to bound the memory taken.
+
+    The planes of each part are numbered from 0 again; together they are `heights`, in order.
+    """
+    first, count = _spans(solid.face_low, solid.face_high, heights)
+    planes = len(heights)
+    begin = np.bincount(first, minlength=planes + 1)
+    end = np.bincount(first + count, minlength=planes + 1)
+    part = np.cumsum(np.cumsum(begin - end)[:planes]) // PART
+    for number in np.unique(part):
+        yield plane_segments(solid, heights[part == number])
 
 
 def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
@@ -118,17 +138,18 @@ def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
 
 def faces_at_height(solid: Solid, height: float) -> Ints:
     """Return the faces (m, 3) that meet the plane z = height [mm]."""
-    low, high = _face_limits(solid.vertices[:, 2], solid.faces)
-    return solid.faces[(low < height) & (high >= height)]
+    return solid.faces[(solid.face_low < height) & (solid.face_high >= height)]
 
 
 def faces_at_radius(solid: Solid, radius: float, *, faces: Ints | None = None) -> Ints:
     """Return the faces (m, 3), of `faces` or of all, that can meet the cylinder of that radius [mm]."""
     faces = solid.faces if faces is None else faces
     x, y = solid.vertices[:, 0], solid.vertices[:, 1]
-    low, high = _face_limits(x * x + y * y, faces)
+    low, high = corner_limits(x * x + y * y, faces)
     a, b, c = (faces[:, i] for i in range(3))
-    longest = np.maximum.reduce([(x[p] - x[q]) ** 2 + (y[p] - y[q]) ** 2 for p, q in ((a, b), (b, c), (c, a))])
+    longest = np.maximum.reduce(
+        [(x[p] - x[q]) ** 2 + (y[p] - y[q]) ** 2 for p, q in ((a, b), (b, c), (c, a))]
+    )
     # a chord of length l between points outside R comes no nearer than sqrt(R^2 - l^2/4)
     return faces[(low - longest / 4 <= radius**2) & (high >= radius**2)]
 
@@ -165,7 +186,7 @@ def outline(segments: Segments, plane: int) -> Floats:
 
 
 def radial_limits(segments: Segments) -> tuple[Floats, Floats]:
-    """Return smallest and largest radius [mm] of the outlines in each plane, (k,) each; NaN for empty planes."""
+    """Return least and largest radius [mm] of the outlines in each plane, (k,) each; NaN if empty."""
     p, d = segments.start, segments.end - segments.start
     square = np.maximum(np.einsum("ij,ij->i", d, d), np.finfo(np.float64).tiny)
     foot = p + np.clip(-np.einsum("ij,ij->i", p, d) / square, 0.0, 1.0)[:, None] * d
@@ -176,12 +197,6 @@ def radial_limits(segments: Segments) -> tuple[Floats, Floats]:
     empty = ~np.isfinite(low)
     low[empty] = high[empty] = np.nan
     return low, high
-
-
-def _face_limits(values: Floats, faces: Ints) -> tuple[Floats, Floats]:
-    """Return least and largest of a value at the corners of each face."""
-    a, b, c = (values[faces[:, i]] for i in range(3))
-    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _spans(low: Floats, high: Floats, levels: Floats) -> tuple[Ints, Ints]:

@@ -20,7 +20,7 @@ FLANK_KEYS = (
 
 
 def to_json(inspection: Inspection) -> dict[str, Any]:
-    """Return an inspection as JSON values: lengths in mm, deviations in µm, null with a reason in `unmeasured`."""
+    """Return an inspection as JSON values: mm, µm and degrees; null with its reason in `unmeasured`."""
     values: dict[str, Any] = {"kind": inspection.kind}
     if inspection.kind is None:
         values["reason"] = inspection.reason
@@ -47,9 +47,9 @@ def _gear(gear: GearResult) -> dict[str, Any]:
         "root_diameter_mm": gear.root_diameter_mm,
         "span_teeth": gear.span_teeth,
         "span_mm": gear.span_mm,
-        "pin_diameter_mm": gear.reference.pin_diameter_mm,
-        "over_pins_mm": None,
-        "runout_um": None,
+        "pin_diameter_mm": gear.pin_diameter_mm,
+        "over_pins_mm": gear.over_pins_mm,
+        "runout_um": gear.runout_um,
         "flanks": {"left": _flank(gear.left), "right": _flank(gear.right)},
         "accuracy_class": gear.accuracy_class,
         "tolerances_um": gear.tolerances_um,
@@ -86,6 +86,7 @@ def _polygon(polygon: PolygonResult) -> dict[str, Any]:
             {
                 "direction_deg": face.direction_deg,
                 "distance_mm": face.distance_mm,
+                "width_mm": face.width_mm,
                 "mid_distance_mm": face.mid_distance_mm,
                 "bow_um": face.bow_um,
                 "flatness_um": face.flatness_um,

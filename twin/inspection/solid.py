@@ -19,6 +19,10 @@ class Solid:
     """(n, 3) [mm]"""
     faces: Ints
     """(m, 3) vertex indices, counter-clockwise seen from outside"""
+    face_low: Floats
+    """(m,) least z of each face"""
+    face_high: Floats
+    """(m,) largest z of each face"""
     turned: bool
     """the mesh came inside out and was turned"""
 
@@ -53,7 +57,20 @@ def check_solid(vertices: ArrayLike, faces: ArrayLike) -> Solid:
     if volume == 0.0:
         raise InputError("mesh: it encloses no volume")
     turned = volume < 0.0
-    return Solid(vertices=points, faces=triangles[:, ::-1] if turned else triangles, turned=turned)
+    low, high = corner_limits(points[:, 2], triangles)
+    return Solid(
+        vertices=points,
+        faces=triangles[:, ::-1] if turned else triangles,
+        face_low=low,
+        face_high=high,
+        turned=turned,
+    )
+
+
+def corner_limits(values: Floats, faces: Ints) -> tuple[Floats, Floats]:
+    """Return least and largest (m,) of a value (n,) of vertices at the corners of each face."""
+    a, b, c = (values[faces[:, i]] for i in range(3))
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _array(value: ArrayLike, name: str, dtype: type[np.generic]) -> NDArray:

@@ -22,3 +22,7 @@ class IdealMachine:
         signals = self._watcher.end(ticks, reached=ticks > 0)
         self._tick += ticks
         return Feedback(ticks=ticks, setpoint=position, actual=position.copy(), signals=signals)
+
+    def rest(self, ticks: int) -> None:
+        """Let `ticks` pass in which nothing moves."""
+        self._tick += ticks

@@ -90,6 +90,10 @@ class MujocoMachine:
         signals = self._watcher.end(ticks, reached=reached)
         return Feedback(ticks=ticks, setpoint=setpoint, actual=actual, alarms=self._alarms(), signals=signals)
 
+    def rest(self, ticks: int) -> None:
+        """Let `ticks` pass in which nothing moves: settled drives hold their axes where they are."""
+        self._tick += ticks
+
     def _forces(self, load: Load, ticks: int) -> Floats:
         forces = load(self._tick, ticks)
         if forces.shape != (ticks, len(self._axes)):

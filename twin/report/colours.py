@@ -37,7 +37,8 @@ class Scale:
         shares = (1.0, 0.5, 0.0, -0.5, -1.0)
         digits = 0 if self.limit_um >= 4 else 1
         return tuple(
-            (50 + 50 * share, ("+" if share > 0 else "") + number(share * self.limit_um, digits)) for share in shares
+            (50 + 50 * share, ("+" if share > 0 else "") + number(share * self.limit_um, digits))
+            for share in shares
         )
 
 
@@ -51,7 +52,7 @@ def scale_for(deviation_um: Floats) -> Scale | None:
 
 
 def palette() -> NDArray[np.uint8]:
-    """(256, 3) red, green, blue by index: 0 steel, 1 blue (material missing), 128 near white, 255 red (too much)."""
+    """(256, 3) red, green, blue by index: 0 steel, 1 blue (missing), 128 near white, 255 red (too much)."""
     shares = np.clip((np.arange(256) - 1) / 254, 0, 1)
     colours = matplotlib.colormaps["RdBu_r"](shares)[:, :3]
     colours[0] = STEEL

@@ -33,23 +33,38 @@ def _tooth_labels(gear: GearResult) -> tuple[Label, ...]:
     front = gear.teeth_range_mm[1]
     turn = 0.0
     if gear.lead_mm:
-        turn = 360.0 * (front - gear.measuring_plane_mm) / abs(gear.lead_mm) * (1 if gear.hand == "right" else -1)
+        turn = (
+            360.0
+            * (front - gear.measuring_plane_mm)
+            / abs(gear.lead_mm)
+            * (1 if gear.hand == "right" else -1)
+        )
     radius = gear.root_diameter_mm / 2 - 0.03 * gear.tip_diameter_mm
-    step = -(-gear.number_of_teeth // MOST_LABELS)
     return tuple(
         _label(tooth, gear.phase_deg + turn - 360.0 * (tooth - 1) / gear.number_of_teeth, radius, front)
-        for tooth in range(1, gear.number_of_teeth + 1, step)
+        for tooth in _spread(gear.number_of_teeth)
     )
 
 
 def _face_labels(polygon: PolygonResult) -> tuple[Label, ...]:
-    step = -(-len(polygon.faces) // MOST_LABELS)
     return tuple(
-        _label(k + 1, polygon.faces[k].direction_deg, 0.86 * polygon.faces[k].distance_mm, polygon.range_mm[1])
-        for k in range(0, len(polygon.faces), step)
+        _label(
+            k,
+            polygon.faces[k - 1].direction_deg,
+            0.86 * polygon.faces[k - 1].distance_mm,
+            polygon.range_mm[1],
+        )
+        for k in _spread(len(polygon.faces))
     )
+
+
+def _spread(count: int) -> range:
+    """Numbers from 1 to `count`, or at most `MOST_LABELS` of them."""
+    return range(1, count + 1, max(1, -(-count // MOST_LABELS)))
 
 
 def _label(number: int, angle_deg: float, radius: float, z: float) -> Label:
     angle = np.radians(angle_deg)
-    return Label(text=str(number), position_mm=(float(radius * np.cos(angle)), float(radius * np.sin(angle)), float(z)))
+    return Label(
+        text=str(number), position_mm=(float(radius * np.cos(angle)), float(radius * np.sin(angle)), float(z))
+    )

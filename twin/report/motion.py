@@ -1,4 +1,4 @@
-"""Axes and spindles over time: where they were told to be, how far behind they were, when they were coupled."""
+"""Axes and spindles over time: where they were told to be, how far behind they were, when coupled."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,7 +26,14 @@ def motion_chart(recording: Recording, rotary: frozenset[str]) -> str | None:
             sharex=True,
             squeeze=False,
             height_ratios=[0.22, *[1.0] * rows],
-            gridspec_kw={"left": 0.085, "right": 0.985, "wspace": 0.16, "hspace": 0.2, "top": 1 - 0.25 / (0.75 + 0.95 * rows), "bottom": 0.4 / (0.75 + 0.95 * rows)},
+            gridspec_kw={
+                "left": 0.085,
+                "right": 0.985,
+                "wspace": 0.16,
+                "hspace": 0.2,
+                "top": 1 - 0.25 / (0.75 + 0.95 * rows),
+                "bottom": 0.4 / (0.75 + 0.95 * rows),
+            },
         )
         spans = sync_spans(recording)
         for axes, title in zip(grid[0], ("Setpoint and actual", "Following error"), strict=True):
@@ -37,9 +44,9 @@ def motion_chart(recording: Recording, rotary: frozenset[str]) -> str | None:
             _draw_axis(grid[k + 1, 0], recording, k, turns)
             _draw_error(grid[k + 1, 1], recording, k, turns)
         for axes in grid[1:].flat:
-            for start, end in spans:
-                axes.axvspan(start, end, color=BAND, zorder=0, linewidth=0)
-            axes.margins(x=0)
+            _shade(axes, spans, BAND)
+        if time[-1] > time[0]:
+            grid[0, 0].set_xlim(time[0], time[-1])
         for axes in grid[-1]:
             axes.set_xlabel("time [s]", labelpad=1)
         return to_svg(sheet, "motion", "Setpoint, actual value and following error of every axis over time")
@@ -79,16 +86,30 @@ def sync_spans(recording: Recording) -> list[tuple[float, float]]:
     ]
 
 
+def _shade(axes: Axes, spans: list[tuple[float, float]], colour: str, opacity: float = 1.0) -> None:
+    bars = [(start, end - start) for start, end in spans]
+    whole_height = axes.get_xaxis_transform()
+    axes.broken_barh(bars, (0, 1), transform=whole_height, color=colour, alpha=opacity, zorder=0, linewidth=0)
+
+
 def _draw_band(axes: Axes, spans: list[tuple[float, float]]) -> None:
     quiet(axes, "left", "bottom")
     axes.set_ylim(0, 1)
-    for start, end in spans:
-        axes.axvspan(start, end, color=LEFT, alpha=0.35, linewidth=0)
+    _shade(axes, spans, LEFT, opacity=0.35)
     if spans:
         start, end = max(spans, key=lambda span: span[1] - span[0])
         axes.text((start + end) / 2, 0.5, "in sync", ha="center", va="center", fontsize=6.0)
     else:
-        axes.text(0.5, 0.5, "never in sync", transform=axes.transAxes, ha="center", va="center", fontsize=6.0, color=GREY)
+        axes.text(
+            0.5,
+            0.5,
+            "never in sync",
+            transform=axes.transAxes,
+            ha="center",
+            va="center",
+            fontsize=6.0,
+            color=GREY,
+        )
 
 
 def _draw_axis(axes: Axes, recording: Recording, k: int, turns: bool) -> None:
@@ -101,7 +122,15 @@ def _draw_axis(axes: Axes, recording: Recording, k: int, turns: bool) -> None:
             time, value = envelope(recording.time_s[1:], speed_rpm(recording.time_s, values))
         else:
             time, value = envelope(recording.time_s, values)
-        axes.plot(time, value, color=colour, linewidth=width, alpha=0.5 if width > 1 else 1.0, label=name, gid=f"motion-{letter}-{name}")
+        axes.plot(
+            time,
+            value,
+            color=colour,
+            linewidth=width,
+            alpha=0.5 if width > 1 else 1.0,
+            label=name,
+            gid=f"{letter}-{name}",
+        )
     axes.set_ylabel(f"{letter}  [{'rpm' if turns else 'mm'}]")
     if k == 0:
         axes.legend(loc="upper right", ncols=2, borderaxespad=0, handlelength=1.2)
@@ -110,8 +139,10 @@ def _draw_axis(axes: Axes, recording: Recording, k: int, turns: bool) -> None:
 def _draw_error(axes: Axes, recording: Recording, k: int, turns: bool) -> None:
     error = recording.setpoint[:, k] - recording.actual[:, k]
     small = largest(error) < (0.1 if turns else 1.0)
-    unit, factor = (("″", 3600.0) if small else ("°", 1.0)) if turns else (("µm", 1e3) if small else ("mm", 1.0))
+    unit, factor = (
+        (("″", 3600.0) if small else ("°", 1.0)) if turns else (("µm", 1e3) if small else ("mm", 1.0))
+    )
     time, value = envelope(recording.time_s, error * factor)
     axes.axhline(0, color=GREY, linewidth=0.5)
-    axes.plot(time, value, color=RIGHT, linewidth=0.7, gid=f"motion-{recording.axes[k]}-error")
+    axes.plot(time, value, color=RIGHT, linewidth=0.7, gid=f"{recording.axes[k]}-error")
     axes.set_ylabel(f"{recording.axes[k]}  [{unit}]")

@@ -27,6 +27,8 @@ from twin.report.traces import MOST_TRACES, helix_chart, profile_chart
 PICTURE_SIZE = (680, 540)
 """[pixels]"""
 STILLS = {"Isometric, front face on top": ISOMETRIC, "Front face, C0 to the right": END}
+MOST_TRIANGLES = 600_000
+"""that are embedded as they are; a larger mesh is thinned out for the view"""
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe\uffff]")
 _ENVIRONMENT = Environment(
     loader=PackageLoader("twin.report", "assets"),
@@ -60,7 +62,9 @@ def render(report: ReportData) -> str:
             key_figures=tables.key_figures(report.inspection),
             comparison=tables.comparison(report.inspection),
             graded=tables.graded(report.inspection.gear) if report.inspection.gear else (),
-            class_reached=tables.class_reached(report.inspection.gear, "overall") if report.inspection.gear else "",
+            class_reached=tables.class_reached(report.inspection.gear, "overall")
+            if report.inspection.gear
+            else "",
             class_allowed=tables.class_allowed(report.inspection),
             missing=words.missing(report.inspection),
             charts=charts,
@@ -68,7 +72,9 @@ def render(report: ReportData) -> str:
             viewer=viewer,
             stills=stills.result() if stills else (),
             pictures=[(picture.caption, _data_url(picture.png)) for picture in report.pictures],
-            programs=[(program.name, tables.listing(program, report.messages)) for program in report.programs],
+            programs=[
+                (program.name, tables.listing(program, report.messages)) for program in report.programs
+            ],
             alarm=Severity.ALARM,
             number=number,
             css=_asset("report.css"),
@@ -100,7 +106,9 @@ def _stills(part: Part, numbers: tuple[Label, ...]) -> tuple[dict[str, Any], ...
             "caption": caption,
             "url": _data_url(png),
             "size": PICTURE_SIZE,
-            "numbers": [(label.text, *at) for label, at in zip(numbers, places, strict=True)] if view is END else (),
+            "numbers": [(label.text, *at) for label, at in zip(numbers, places, strict=True)]
+            if view is END
+            else (),
         }
         for (caption, view), png in zip(STILLS.items(), pngs, strict=True)
     )
@@ -108,7 +116,7 @@ def _stills(part: Part, numbers: tuple[Label, ...]) -> tuple[dict[str, Any], ...
 
 def _viewer(part: Part, numbers: tuple[Label, ...]) -> dict[str, Any]:
     """What the template needs to set up the view that turns."""
-    shown = thinned(part)
+    shown = thinned(part, MOST_TRIANGLES)
     scale = scale_for(part.deviation_um)
     index = scale.index(shown.deviation_um) if scale else np.zeros(len(shown.vertices), np.uint8)
     payload = encode(shown.vertices, shown.faces, index)

@@ -8,7 +8,8 @@ Deflated (zlib), then base64. Before that, one after the other, for n vertices a
    far the index lies below the next new one (0 = the new one);
 3. colour index, n bytes.
 
-Values of 1 and of 2 are unsigned 32-bit, their bytes apart: all lowest bytes, then all second bytes and so on.
+Values of 1 and of 2 are unsigned 32-bit, their bytes apart: all lowest bytes, then all second bytes and so
+on.
 """
 
 import base64
@@ -23,8 +24,6 @@ from twin.report.data import Part
 
 STEPS = 2**20
 """over the part's largest extent: 0.04 µm on a gear of 44 mm, so that feed marks keep their shading"""
-MOST_TRIANGLES = 600_000
-"""that are shown one by one; above, the view is thinned out"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +48,7 @@ class Payload:
 
 
 def encode(vertices: Floats, faces: NDArray[np.integer], colour: NDArray[np.uint8]) -> Payload:
-    """Pack vertices (n, 3) [mm], faces (m, 3), m > 0, and colour indices (n,); unused vertices are left out."""
+    """Pack vertices (n, 3) [mm], faces (m, 3), m > 0, colour indices (n,); unused vertices are left out."""
     used, renumbered = _by_first_use(faces, len(vertices))
     points = vertices[used]
     origin = points.min(axis=0)
@@ -69,14 +68,18 @@ def encode(vertices: Floats, faces: NDArray[np.integer], colour: NDArray[np.uint
     )
 
 
-def thinned(part: Part, most: int = MOST_TRIANGLES) -> Part:
-    """Return the part, with at most `most` triangles: vertices that share a cell of a grid become one of them."""
+def thinned(part: Part, most: int) -> Part:
+    """Return the part with at most `most` triangles: vertices that share a cell of a grid become one."""
     if len(part.faces) <= most:
         return part
     extent = float(np.ptp(part.vertices, axis=0).max()) or 1.0
     cell = extent / np.sqrt(most)
     while True:
-        key = np.rint((part.vertices - part.vertices.min(axis=0)) / cell).astype(np.int64) @ [1 << 42, 1 << 21, 1]
+        key = np.rint((part.vertices - part.vertices.min(axis=0)) / cell).astype(np.int64) @ [
+            1 << 42,
+            1 << 21,
+            1,
+        ]
         _, kept, member = np.unique(key, return_index=True, return_inverse=True)
         faces = member[part.faces]
         solid = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])

@@ -16,11 +16,13 @@ from twin.inspection.result import Floats
 from twin.report.colours import STEEL
 
 Ints = NDArray[np.integer]
-Single = NDArray[np.float32]
+Single = NDArray[np.floating]
 SAMPLES = 2
 """picture elements are averaged over SAMPLES × SAMPLES"""
 CREASE_COSINE = np.cos(np.radians(15.0))
 """a blended normal further than this from the facet's own lies on a sharp edge"""
+LEVEL = 1e-4
+"""an edge that falls by less crosses no row [pixels]"""
 FALLOFF = np.float32(0.16)
 """share by which the light weakens from the middle to the lower right corner"""
 
@@ -56,18 +58,18 @@ def render_part(
 ) -> tuple[bytes, ...]:
     """Draw a mesh, filling the frame, once for every view; return PNGs with a transparent background.
 
-    `vertices` (n, 3) [mm]; `faces` (m, 3) counter-clockwise seen from outside; `size` (width, height) in pixels;
-    `colour` red, green, blue in 0 … 1. An empty mesh gives an empty picture.
+    `vertices` (n, 3) [mm]; `faces` (m, 3) counter-clockwise seen from outside; `size` (width, height) in
+    pixels; `colour` red, green, blue in 0 … 1. An empty mesh gives an empty picture.
     """
     mesh = _Mesh(vertices, faces)
     return tuple(_png(_draw(mesh, size[0] * SAMPLES, size[1] * SAMPLES, view), colour) for view in views)
 
 
 def place(vertices: Floats, size: tuple[int, int], view: View, points: Floats) -> Floats:
-    """(k, 2) where `points` (k, 3) [mm] stand in the picture of the mesh: pixels from its upper left corner."""
+    """(k, 2) where `points` (k, 3) [mm] stand in the mesh's picture: pixels from its upper left corner."""
     axes = view.axes()
     scale, shift = _fit(axes @ vertices.T, *size)
-    return _to_screen(axes @ points.T, scale, shift)[:2].T
+    return _to_screen(axes @ points.T, scale, shift)[:2].T.astype(np.float64)
 
 
 class _Mesh:
@@ -84,7 +86,7 @@ class _Mesh:
         """(3, m)"""
         total = np.zeros_like(self.points)
         for k in range(3):
-            # Weighted by the angle at the vertex: the mean does not depend on how a flank is cut into triangles.
+            # Weighted by the angle at the vertex: the mean does not depend on the triangulation.
             angle = np.arccos(np.clip(-_dot(edge[k], edge[k - 1]), -1, 1))
             for axis in range(3):
                 total[axis] += np.bincount(self.faces[k], self.facet_normals[axis] * angle, total.shape[1])
@@ -157,7 +159,9 @@ def _area(a: Single, b: Single, c: Single) -> Single:
 def _expand(first: Ints, count: Ints) -> tuple[Ints, Ints]:
     """For runs first, first + 1, … of `count` members: the run of every member, and the member."""
     run = np.repeat(np.arange(len(count), dtype=np.int32), count)
-    return run, np.arange(len(run), dtype=np.int32) + np.repeat(first - np.cumsum(count, dtype=np.int32) + count, count)
+    return run, np.arange(len(run), dtype=np.int32) + np.repeat(
+        first - np.cumsum(count, dtype=np.int32) + count, count
+    )
 
 
 def _span(low: Single, high: Single, size: int) -> tuple[Ints, Ints]:
@@ -175,7 +179,7 @@ def _visible(corner: Single, width: int, height: int) -> tuple[Ints, Ints, Singl
     x, y = np.take_along_axis(corner[:2], np.argsort(corner[1], axis=0)[None], axis=1)
     triangle, row = _expand(*_span(y[0], y[2], height))
     at = row.astype(np.float32) + 0.5
-    # From its top corner to its bottom corner a triangle has one long edge, and two short ones by the middle corner.
+    # From top to bottom a triangle has one long edge, and two short ones by its middle corner.
     long = _edge(x[[0]], y[[0]], x[[2]], y[[2]])
     short = _edge(x[:2], y[:2], x[1:], y[1:])
     lower = triangle + np.where(at > y[1, triangle], np.int32(corner.shape[2]), np.int32(0))
@@ -194,9 +198,9 @@ def _visible(corner: Single, width: int, height: int) -> tuple[Ints, Ints, Singl
 
 
 def _edge(x: Single, y: Single, to_x: Single, to_y: Single) -> Single:
-    """(2, k m) of k edges of m triangles, one after the other: where they stand at y = 0, and how x runs with y."""
+    """(2, k m) of k edges of m triangles, one after the other: x at y = 0, and how x runs with y."""
     fall = to_y - y
-    slope = (to_x - x) / np.where(fall == 0, np.inf, fall)
+    slope = (to_x - x) / np.where(np.abs(fall) < LEVEL, np.inf, fall)
     return np.stack([x - y * slope, slope]).reshape(2, -1)
 
 
@@ -242,7 +246,9 @@ def _crevices(depth: Single, pixel: Ints, shape: tuple[int, int]) -> Single:
 def _png(image: Single, colour: tuple[float, float, float]) -> bytes:
     """Encode (height, width, 2), brightness times coverage and coverage."""
     covered = image[..., 1:]
-    rgba = np.concatenate([image[..., :1] / np.maximum(covered, 1e-6) * np.float32(colour), covered], axis=-1)
+    rgba = np.concatenate(
+        [image[..., :1] / np.maximum(covered, 1e-6) * np.array(colour, np.float32), covered], axis=-1
+    )
     buffer = io.BytesIO()
     matplotlib.image.imsave(buffer, (np.clip(rgba, 0, 1) * 255 + 0.5).astype(np.uint8), format="png")
     return buffer.getvalue()

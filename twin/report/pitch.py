@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from twin.inspection.result import Flank, Floats, GearResult
+from twin.inspection.result import Flank, GearResult
 from twin.report.scale import largest, number
 from twin.report.style import BAND, GREY, LEFT, RIGHT, figure, styled, to_svg
 
@@ -16,25 +16,34 @@ def pitch_chart(gear: GearResult) -> str | None:
     if not any(np.isfinite(values).any() for values in curves):
         return None
     with styled():
-        sheet = figure(3.5)
+        sheet = figure(2.7)
         grid = sheet.subplots(
             2,
             2,
             sharex="col",
             sharey="row",
-            gridspec_kw={"left": 0.075, "right": 0.985, "top": 0.93, "bottom": 0.10, "wspace": 0.09, "hspace": 0.22},
+            gridspec_kw={
+                "left": 0.075,
+                "right": 0.985,
+                "top": 0.93,
+                "bottom": 0.10,
+                "wspace": 0.09,
+                "hspace": 0.22,
+            },
         )
         for column, (side, flank), colour in zip(grid.T, flanks.items(), (LEFT, RIGHT), strict=True):
             column[0].set_title(f"{side.capitalize()} flank", color=colour)
-            _bars(column[0], flank, colour, f"pitch-{side}-single")
-            _curve(column[1], flank, colour, f"pitch-{side}-cumulative")
+            _bars(column[0], flank, colour, f"{side}-single")
+            _curve(column[1], flank, colour, f"{side}-cumulative")
             column[1].set_xlabel("tooth", labelpad=1)
         for row, symbol in enumerate(("$f_p$ [µm]", "$F_p$ [µm]")):
             grid[row, 0].set_ylabel(symbol)
-            reach = 1.25 * max(largest(values) for values in curves[row::2]) or 1.0
+            reach = 1.4 * max(largest(values) for values in curves[row::2]) or 1.0
             grid[row, 0].set_ylim(-reach, reach)
             grid[row, 0].yaxis.set_major_locator(MaxNLocator(5))
-        return to_svg(sheet, "pitch", "Single and cumulative pitch deviation of every tooth, left and right flanks")
+        return to_svg(
+            sheet, "pitch", "Single and cumulative pitch deviation of every tooth, left and right flanks"
+        )
 
 
 def _bars(axes: Axes, flank: Flank, colour: str, gid: str) -> None:
@@ -53,7 +62,7 @@ def _curve(axes: Axes, flank: Flank, colour: str, gid: str) -> None:
     _frame(axes, teeth, f"$F_p$  {number(flank.cumulative_pitch_um)} µm")
 
 
-def _frame(axes: Axes, teeth: Floats, note: str) -> None:
+def _frame(axes: Axes, teeth: np.ndarray, note: str) -> None:
     axes.axhline(0, color=GREY, linewidth=0.6)
     axes.set_xlim(0.3, max(len(teeth), 1) + 0.7)
     axes.xaxis.set_major_locator(MaxNLocator(10, integer=True))

@@ -37,11 +37,16 @@ def number(value: float | None, digits: int = 1, unit: str = "") -> str:
     text = f"{value:.{digits}f}"
     if float(text) == 0:
         text = text.lstrip("-")
-    return text.replace("-", "−") + (f" {unit}" if unit else "")
+    return _with_unit(text, unit)
 
 
 def plain(value: float | None, unit: str = "") -> str:
     """`value` as short as four significant figures allow: 2, 17, 0.5."""
     if value is None or not math.isfinite(value):
         return MISSING
-    return f"{value:.4g}".replace("-", "−") + (f" {unit}" if unit else "")
+    return _with_unit(f"{value:.4g}", unit)
+
+
+def _with_unit(text: str, unit: str) -> str:
+    space = "" if unit in {"", "°"} else " "
+    return text.replace("-", "−") + space + unit

@@ -18,11 +18,24 @@ def section_chart(polygon: PolygonResult) -> str | None:
     with styled():
         sheet = figure(3.6)
         outline, unrolled = sheet.subplots(
-            1, 2, width_ratios=(1, 1.15), gridspec_kw={"left": 0.01, "right": 0.985, "wspace": 0.16, "top": 0.90, "bottom": 0.12}
+            1,
+            2,
+            width_ratios=(1, 1.15),
+            gridspec_kw={"left": 0.01, "right": 0.985, "wspace": 0.16, "top": 0.90, "bottom": 0.12},
         )
-        _draw_outline(outline, polygon, across, face, along, deviation_um, magnification)
+        _draw_outline(
+            outline,
+            polygon,
+            across=across,
+            face=face,
+            along=along,
+            deviation_um=deviation_um,
+            magnification=magnification,
+        )
         _draw_faces(unrolled, polygon, face, along, deviation_um)
-        return to_svg(sheet, "section", "Section of the polygon against the true polygon, deviation magnified")
+        return to_svg(
+            sheet, "section", "Section of the polygon against the true polygon, deviation magnified"
+        )
 
 
 def deviations(polygon: PolygonResult, across_flats_mm: float) -> tuple[np.ndarray, Floats, Floats]:
@@ -50,6 +63,7 @@ def true_normals(polygon: PolygonResult) -> np.ndarray:
 def _draw_outline(
     axes: Axes,
     polygon: PolygonResult,
+    *,
     across: float,
     face: np.ndarray,
     along: Floats,
@@ -59,14 +73,14 @@ def _draw_outline(
     normals = true_normals(polygon)
     order = np.argsort(np.angle(normals))
     corner = across / 2 / np.cos(np.pi / len(normals)) * np.exp(1j * np.pi / len(normals)) * normals[order]
-    corner = np.append(corner, corner[:1])
+    corner = np.concatenate([corner, corner[:1]])
     foot = (across / 2 + 1j * along) * normals[face]
     drawn = foot + deviation_um * 1e-3 * magnification * normals[face]
-    drawn, foot = np.append(drawn, drawn[:1]), np.append(foot, foot[:1])
+    drawn, foot = (np.concatenate([points, points[:1]]) for points in (drawn, foot))
     around = np.concatenate([drawn, foot[::-1]])
     axes.fill(around.real, around.imag, color=LEFT, alpha=0.15, linewidth=0)
-    axes.plot(corner.real, corner.imag, color=GREY, linewidth=0.6, gid="section-true")
-    axes.plot(drawn.real, drawn.imag, color=LEFT, gid="section-outline")
+    axes.plot(np.real(corner), np.imag(corner), color=GREY, linewidth=0.6, gid="true")
+    axes.plot(drawn.real, drawn.imag, color=LEFT, gid="outline")
     for k, normal in enumerate(normals):
         at = normal * across * 0.36
         axes.text(at.real, at.imag, str(k + 1), ha="center", va="center", fontweight="bold")
@@ -76,7 +90,9 @@ def _draw_outline(
     axes.set_title(f"Section, deviation × {magnification:g}")
 
 
-def _draw_faces(axes: Axes, polygon: PolygonResult, face: np.ndarray, along: Floats, deviation_um: Floats) -> None:
+def _draw_faces(
+    axes: Axes, polygon: PolygonResult, face: np.ndarray, along: Floats, deviation_um: Floats
+) -> None:
     """Deviation along each face, one below the other."""
     spacing = nice_ceiling(1.3 * max(np.ptp(deviation_um), 0.5))
     zeros = -spacing * np.arange(len(polygon.faces))
@@ -84,14 +100,22 @@ def _draw_faces(axes: Axes, polygon: PolygonResult, face: np.ndarray, along: Flo
         here = np.flatnonzero(face == k)
         here = here[np.argsort(along[here])]
         axes.axhline(zero, color=FAINT, linewidth=0.6, zorder=0)
-        axes.plot(along[here], zero + deviation_um[here], color=RIGHT, gid=f"section-face-{k + 1}")
+        axes.plot(along[here], zero + deviation_um[here], color=RIGHT, gid=f"face-{k + 1}")
     low = min(float(deviation_um.min()), 0.0)
-    axes.set_ylim(zeros[-1] + low - 0.3 * spacing, max(float(deviation_um.max()), 0.0) + 0.6 * spacing)
+    top = max(float(deviation_um.max()), 0.0) + 0.15 * spacing
+    axes.set_ylim(zeros[-1] + low - 0.3 * spacing, top + 0.6 * spacing)
     axes.set_yticks(zeros, [str(k + 1) for k in range(len(zeros))])
     axes.set_ylabel("face")
     axes.set_xlabel("along the face [mm]")
     axes.set_title("Faces against the true flat, + = material left")
     um = nice_floor(0.5 * spacing)
     right = float(along.max())
-    axes.plot([right, right], [zeros[0] + 0.05 * spacing, zeros[0] + 0.05 * spacing + um], color=INK, linewidth=1.2)
-    axes.annotate(f"{um:g} µm", (right, zeros[0] + 0.05 * spacing + um / 2), (-3, 0), textcoords="offset points", ha="right", va="center")
+    axes.plot([right, right], [top, top + um], color=INK, linewidth=1.2)
+    axes.annotate(
+        f"{um:g} µm",
+        (right, top + um / 2),
+        (-3, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+    )

@@ -2,11 +2,14 @@
 
 import io
 import re
+from contextlib import AbstractContextManager
 from html import escape
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.typing import RcKeyType
 
 WIDTH_IN = 7.2
 """of every chart: the text width of an A4 page"""
@@ -19,7 +22,7 @@ RIGHT = "#b3541e"
 """right flanks, actual values"""
 BAND = "#eef3f8"
 
-RC = {
+RC: dict[RcKeyType, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 7.0,
     "text.color": INK,
@@ -71,7 +74,9 @@ def figure(height_in: float) -> Figure:
 def to_svg(figure: Figure, name: str, description: str) -> str:
     """Inline SVG without size, prologue or metadata; every id starts with `name`, numbers end at 0.01 pt."""
     buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    figure.savefig(
+        buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
+    )
     svg = _METADATA.sub("", _PROLOGUE.sub("", buffer.getvalue()))
     head, body = svg.split(">", 1)
     head = _SIZE.sub("", head) + f' role="img" aria-label="{escape(description)}"'
@@ -91,6 +96,6 @@ def quiet(axes: Axes, *sides: str) -> None:
         axes.tick_params(bottom=False, labelbottom=False)
 
 
-def styled():
+def styled() -> AbstractContextManager[None]:
     """Apply the look for the time of a `with` block."""
     return matplotlib.rc_context(RC)

@@ -38,11 +38,8 @@ class Graded:
     symbol: str
     """HTML"""
     name: str
-    left: str
-    right: str
-    left_out: bool
-    """beyond the tolerance"""
-    right_out: bool
+    values: tuple[tuple[str, bool], ...]
+    """left and right, or one for both: the value, and whether it lies beyond the tolerance"""
     tolerance: str
     reached: str
 
@@ -68,7 +65,9 @@ def comparison(inspection: Inspection) -> tuple[Compared, ...]:
 
 def graded(gear: GearResult) -> tuple[Graded, ...]:
     """Flank deviations [µm], tolerance and class of every item."""
-    return tuple(_grade(gear, *item) for item in FLANK_ITEMS)
+    sides = (gear.left, gear.right)
+    rows = [_grade(gear, *item, *(getattr(side, f"{item[0]}_um") for side in sides)) for item in FLANK_ITEMS]
+    return (*rows, _grade(gear, "runout", "F<sub>r</sub>", "runout", gear.runout_um))
 
 
 def class_allowed(inspection: Inspection) -> str:
@@ -83,7 +82,13 @@ def class_reached(gear: GearResult, item: str) -> str:
     if item not in gear.accuracy_class:
         return MISSING
     reached = gear.accuracy_class[item]
-    return "worse than 11" if reached is None and gear.tolerances_um else MISSING if reached is None else str(reached)
+    return (
+        "worse than 11"
+        if reached is None and gear.tolerances_um
+        else MISSING
+        if reached is None
+        else str(reached)
+    )
 
 
 def listing(program: Program, messages: tuple[Message, ...]) -> tuple[Line, ...]:
@@ -106,20 +111,15 @@ def listing(program: Program, messages: tuple[Message, ...]) -> tuple[Line, ...]
     return tuple(lines)
 
 
-def _grade(gear: GearResult, item: str, symbol: str, name: str) -> Graded:
-    left, right = (getattr(flank, f"{item}_um") for flank in (gear.left, gear.right))
+def _grade(gear: GearResult, item: str, symbol: str, name: str, *found: float | None) -> Graded:
     tolerance = gear.tolerances_um.get(item)
-
-    def beyond(value: float | None) -> bool:
-        return tolerance is not None and value is not None and abs(value) > tolerance
-
     return Graded(
         symbol=symbol,
         name=name,
-        left=number(left),
-        right=number(right),
-        left_out=beyond(left),
-        right_out=beyond(right),
+        values=tuple(
+            (number(value), tolerance is not None and value is not None and abs(value) > tolerance)
+            for value in found
+        ),
         tolerance=plain(tolerance),
         reached=class_reached(gear, item),
     )
@@ -129,14 +129,35 @@ def _compare_gear(gear: GearResult, nominal: GearNominal | None) -> tuple[Compar
     tip = nominal.tip_diameter_mm if nominal else None
     rows = (
         ("Teeth", str(nominal.number_of_teeth) if nominal else MISSING, str(gear.number_of_teeth)),
-        ("Normal module", plain(nominal.normal_module_mm, "mm") if nominal else MISSING, number(gear.normal_module_mm, 4, "mm")),
-        ("Helix angle", plain(nominal.helix_angle_deg, "°") if nominal else MISSING, number(gear.helix_angle_deg, 4, "°")),
+        (
+            "Normal module",
+            plain(nominal.normal_module_mm, "mm") if nominal else MISSING,
+            number(gear.normal_module_mm, 4, "mm"),
+        ),
+        (
+            "Helix angle",
+            plain(nominal.helix_angle_deg, "°") if nominal else MISSING,
+            number(gear.helix_angle_deg, 4, "°"),
+        ),
         ("Hand", _hand(nominal.helix_angle_deg) if nominal else MISSING, gear.hand),
         ("Lead", MISSING, number(gear.lead_mm, 3, "mm")),
         ("Tip diameter", plain(tip, "mm"), number(gear.tip_diameter_mm, 3, "mm")),
         ("Root diameter", MISSING, number(gear.root_diameter_mm, 3, "mm")),
-        (f"Span over {gear.span_teeth} teeth" if gear.span_teeth else "Span", MISSING, number(gear.span_mm, 4, "mm")),
-        ("Profile shift", plain(nominal.profile_shift) if nominal else MISSING, number(gear.profile_shift, 4)),
+        (
+            f"Span over {gear.span_teeth} teeth" if gear.span_teeth else "Span",
+            MISSING,
+            number(gear.span_mm, 4, "mm"),
+        ),
+        (
+            "Over balls" if gear.pin_diameter_mm is None else f"Over balls Ø {plain(gear.pin_diameter_mm)}",
+            MISSING,
+            number(gear.over_pins_mm, 4, "mm"),
+        ),
+        (
+            "Profile shift",
+            plain(nominal.profile_shift) if nominal else MISSING,
+            number(gear.profile_shift, 4),
+        ),
     )
     return tuple(Compared(label=a, wanted=b, found=c) for a, b, c in rows if (b, c) != (MISSING, MISSING))
 
@@ -171,7 +192,10 @@ def key_figures(inspection: Inspection) -> tuple[tuple[str, str], ...]:
         return (
             ("Teeth", str(gear.number_of_teeth)),
             ("Module", number(gear.normal_module_mm, 3, "mm")),
-            ("Helix", "spur" if gear.hand == "spur" else f"{number(abs(gear.helix_angle_deg), 3)}° {gear.hand}"),
+            (
+                "Helix",
+                "spur" if gear.hand == "spur" else f"{number(abs(gear.helix_angle_deg), 3)}° {gear.hand}",
+            ),
             ("Tip Ø", number(gear.tip_diameter_mm, 2, "mm")),
             ("Profile F<sub>α</sub>", number(worst_profile, 1, "µm")),
             ("Helix F<sub>β</sub>", number(_worst(gear, "helix_total_um"), 1, "µm")),

@@ -37,10 +37,18 @@ class Kind:
 
 
 PROFILE = Kind(
-    name="profile", position="roll length ξ [mm]", low="root", high="tip", symbols=("$f_{Hα}$", "$f_{fα}$", "$F_α$")
+    name="profile",
+    position="roll length ξ [mm]",
+    low="root",
+    high="tip",
+    symbols=("$f_{Hα}$", "$f_{fα}$", "$F_α$"),
 )
 HELIX = Kind(
-    name="helix", position="z [mm]", low="chuck side", high="front face", symbols=("$f_{Hβ}$", "$f_{fβ}$", "$F_β$")
+    name="helix",
+    position="z [mm]",
+    low="chuck side",
+    high="front face",
+    symbols=("$f_{Hβ}$", "$f_{fβ}$", "$F_β$"),
 )
 
 
@@ -75,7 +83,7 @@ def evaluated(trace: Trace) -> np.ndarray:
 
 
 def mean_line(trace: Trace) -> Floats | None:
-    """Least-squares line over the evaluated range: (2, 2) its ends as position and deviation; None below 2 points."""
+    """Least-squares line over the evaluated range: (2, 2) its ends, position and deviation; None below 2."""
     used = evaluated(trace)
     if np.count_nonzero(used) < 2:
         return None
@@ -97,13 +105,13 @@ def _chart(gear: GearResult, kind: Kind) -> str | None:
     spacing = spacing_um(every)
     width = (max(len(sides["left"]), len(sides["right"]), FEWEST_COLUMNS) + 0.5) * spacing
     with styled():
-        sheet = figure(3.7)
+        sheet = figure(3.2)
         left, middle, right = sheet.subplots(
             1,
             3,
             sharey=True,
             width_ratios=(1, MIDDLE, 1),
-            gridspec_kw={"left": 0.075, "right": 0.985, "wspace": 0.0, "top": 0.92, "bottom": 0.20},
+            gridspec_kw={"left": 0.075, "right": 0.985, "wspace": 0.0, "top": 0.92, "bottom": 0.21},
         )
         left.set_ylim(low - margin, high + margin)
         for axes, side, colour, outward in ((left, "left", LEFT, -1.0), (right, "right", RIGHT, 1.0)):
@@ -111,7 +119,15 @@ def _chart(gear: GearResult, kind: Kind) -> str | None:
             axes.set_xlim(-0.75 * spacing, width - 0.75 * spacing)
             quiet(axes, "left", "bottom")
             for k, trace in enumerate(sides[side]):
-                _draw_trace(axes, trace, k * spacing, spacing, colour, outward, f"{kind.name}-{side}-{trace.tooth}")
+                _draw_trace(
+                    axes,
+                    trace,
+                    zero=k * spacing,
+                    spacing=spacing,
+                    colour=colour,
+                    outward=outward,
+                    gid=f"{side}-{trace.tooth}",
+                )
                 values = (trace.slope_um, trace.form_um, trace.total_um)
                 _write_column(axes, k * spacing, (str(trace.tooth), *(number(value) for value in values)))
             if not sides[side]:
@@ -119,14 +135,18 @@ def _chart(gear: GearResult, kind: Kind) -> str | None:
         _write_column(left, None, ("tooth", *(f"{symbol} µm" for symbol in kind.symbols)))
         _draw_middle(middle, kind, gear, every)
         middle.set_xlim(-width * MIDDLE / 2, width * MIDDLE / 2)
-        _draw_scale_box(middle, nice_floor(0.5 * spacing), nice_floor(0.12 * (high - low) or 1.0), (low + high) / 2)
+        _draw_scale_box(
+            middle, nice_floor(0.5 * spacing), nice_floor(0.12 * (high - low) or 1.0), (low + high) / 2
+        )
         return to_svg(
-            sheet, kind.name, f"{kind.name.capitalize()} deviation of left and right flanks, one trace a tooth"
+            sheet,
+            kind.name,
+            f"{kind.name.capitalize()} deviation of left and right flanks, one trace a tooth",
         )
 
 
 def _draw_trace(
-    axes: Axes, trace: Trace, zero: float, spacing: float, colour: str, outward: float, gid: str
+    axes: Axes, trace: Trace, *, zero: float, spacing: float, colour: str, outward: float, gid: str
 ) -> None:
     used = evaluated(trace)
     across = zero + outward * trace.deviation_um
@@ -172,21 +192,51 @@ def _draw_middle(axes: Axes, kind: Kind, gear: GearResult, traces: tuple[Trace, 
             color=GREY,
         )
     axes.annotate(
-        kind.position, (0.5, 0), (0, -20), xycoords="axes fraction", textcoords="offset points", ha="center", color=GREY
+        kind.position,
+        (0.5, 0),
+        (0, -20),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        ha="center",
+        color=GREY,
     )
-    for mark in sorted({round(end, 3) for trace in traces for end in trace.evaluation if np.isfinite(end)}):
-        axes.axhline(mark, color=FAINT, linewidth=0.5, zorder=0)
-        axes.text(0, mark, _place(kind, gear, mark), ha="center", va="center", fontsize=6.0, backgroundcolor="white")
+    for low_end in (True, False):
+        marks = {round((min if low_end else max)(trace.evaluation), 3) for trace in traces}
+        for mark in sorted(filter(np.isfinite, marks)):
+            axes.axhline(mark, color=GREY, linewidth=0.5)
+            axes.annotate(
+                _place(kind, gear, mark),
+                (0, mark),
+                (0, 3 if low_end else -3),
+                textcoords="offset points",
+                ha="center",
+                va="bottom" if low_end else "top",
+                fontsize=6.0,
+            )
 
 
 def _draw_scale_box(axes: Axes, across_um: float, along_mm: float, centre: float) -> None:
     box = Rectangle(
-        (-across_um / 2, centre - along_mm / 2), across_um, along_mm, facecolor="none", edgecolor=INK, linewidth=0.6
+        (-across_um / 2, centre - along_mm / 2),
+        across_um,
+        along_mm,
+        facecolor="none",
+        edgecolor=INK,
+        linewidth=0.6,
+        gid="scale-box",
     )
     axes.add_patch(box)
-    for text, at, gap in ((f"{across_um:g} µm", centre + along_mm / 2, 3), (f"{along_mm:g} mm", centre - along_mm / 2, -3)):
+    for text, at, gap in (
+        (f"{across_um:g} µm", centre + along_mm / 2, 3),
+        (f"{along_mm:g} mm", centre - along_mm / 2, -3),
+    ):
         axes.annotate(
-            text, (0, at), (0, gap), textcoords="offset points", ha="center", va="bottom" if gap > 0 else "top"
+            text,
+            (0, at),
+            (0, gap),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if gap > 0 else "top",
         )
 
 

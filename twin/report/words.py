@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from twin.inspection.nominal import GearNominal, Nominal
+from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.inspection.result import GearResult, Inspection, PolygonResult, Verdict
 from twin.report.data import Message, ReportData, Severity
 from twin.report.scale import MISSING, number, plain
@@ -41,10 +41,10 @@ def headline(data: ReportData) -> Headline:
     stop = tuple(_stop(alarm) for alarm in alarms[:1])
     if inspection.kind is None:
         return _nothing(data, stop)
-    came = found(inspection)
+    came, findings = found(inspection), _findings(data, stop)
     if inspection.verdict is Verdict.OUT:
-        sentence = f"The part is not what was wanted. It came out as {came}; wanted was {wanted(inspection.nominal)}."
-        return Headline(tone=Tone.BAD, label="Out of tolerance", sentence=sentence, findings=stop + inspection.findings)
+        sentence = _missed(inspection, came)
+        return Headline(tone=Tone.BAD, label="Out of tolerance", sentence=sentence, findings=findings)
     if inspection.verdict is Verdict.NOT_GRADED:
         sentence = f"The part came out as {came}. It was measured, not judged."
         tone, label = Tone.OPEN, "Not graded"
@@ -54,7 +54,7 @@ def headline(data: ReportData) -> Headline:
     if stop:
         sentence += " But the program did not run to its end."
         tone, label = Tone.BAD, "Stopped by an alarm"
-    return Headline(tone=tone, label=label, sentence=sentence, findings=stop + inspection.findings)
+    return Headline(tone=tone, label=label, sentence=sentence, findings=findings)
 
 
 def found(inspection: Inspection) -> str:
@@ -77,18 +77,50 @@ def wanted(nominal: Nominal | None) -> str:
     return f"{shape}, {plain(nominal.across_flats_mm)} mm across flats {nominal.tolerance}"
 
 
+def _missed(inspection: Inspection, came: str) -> str:
+    gear, polygon, nominal = inspection.gear, inspection.polygon, inspection.nominal
+    if polygon and isinstance(nominal, PolygonNominal) and polygon.number_of_sides == nominal.number_of_sides:
+        width = polygon.across_flats_caliper_mm
+        caliper = f", {number(width, 3)} mm by caliper" if width is not None else ""
+        asked = f"{plain(nominal.across_flats_mm)} mm {nominal.tolerance}"
+        return f"The part is {came}{caliper}, but out of tolerance: {asked} was wanted."
+    if gear and isinstance(nominal, GearNominal) and wanted(nominal).startswith(came):
+        reached = gear.accuracy_class.get("overall")
+        classes = (
+            f": class {reached} of ISO 1328-1 reached, {nominal.accuracy_class} allowed" if reached else ""
+        )
+        return f"The part is {came}, as wanted, but it is out of tolerance{classes}."
+    return f"The part is not what was wanted. It came out as {came}; wanted was {wanted(nominal)}."
+
+
+def _findings(data: ReportData, stop: tuple[str, ...]) -> tuple[str, ...]:
+    """The stop first, then what the inspection found, as sentences; the reason has the headline to itself."""
+    said = [finding.strip() for finding in data.inspection.findings if finding != data.inspection.reason]
+    return stop + tuple(f"{text[0].upper()}{text[1:].rstrip('.')}." for text in said if text)
+
+
 def _nothing(data: ReportData, stop: tuple[str, ...]) -> Headline:
-    reason = data.inspection.reason.strip()
-    because = f": {reason.rstrip('.')}." if reason else "."
-    findings = stop + data.inspection.findings
+    reason = data.inspection.reason.strip().rstrip(".")
+    because = f": {reason}." if reason else "."
+    findings = _findings(data, stop)
     if data.part is None and stop:
-        return Headline(tone=Tone.BAD, label="No part", sentence="The program stopped before a part was made.", findings=findings)
+        return Headline(
+            tone=Tone.BAD,
+            label="No part",
+            sentence="The program stopped before a part was made.",
+            findings=findings,
+        )
     if data.part is None and not reason:
-        return Headline(tone=Tone.OPEN, label="No part", sentence="No part was made or measured.", findings=findings)
+        return Headline(
+            tone=Tone.OPEN, label="No part", sentence="No part was made or measured.", findings=findings
+        )
     if data.inspection.nominal is None:
         sentence = f"What came out is neither a gear nor a polygon{because}"
-        return Headline(tone=Tone.BAD if stop else Tone.OPEN, label="Not recognised", sentence=sentence, findings=findings)
-    sentence = f"What came out is not {wanted(data.inspection.nominal)}{because}"
+        return Headline(
+            tone=Tone.BAD if stop else Tone.OPEN, label="Not recognised", sentence=sentence, findings=findings
+        )
+    said = reason if reason.startswith("not ") else f"not {wanted(data.inspection.nominal)}{because}"
+    sentence = f"What came out is {said.rstrip('.')}."
     return Headline(tone=Tone.BAD, label="Not the part", sentence=sentence, findings=findings)
 
 

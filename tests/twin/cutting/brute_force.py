@@ -1,65 +1,77 @@
 """An evaluator of the cut that shares nothing with the kernel: slow, plain, one point at a time.
 
 Every gash is followed through every sample interval; the instant at which its half-plane passes the point
-is bisected; the depth is the distance to the tooth's outline drawn as a fine polygon.
+is bisected; the depth is the distance to outlines drawn as fine polygons.
 """
 
 import math
 
 import numpy as np
 
+ARC = np.linspace(0.0, 1.0, 1500)
+DEEP = -1000.0
 
-def hob_outline(module, outside_diameter, starts, hand, pressure_angle, addendum, tip_radius, dedendum):
-    """One tooth and half a land on both sides as a polygon (n, 2) of (s, rho), open downwards."""
+
+def hob_outlines(*, module, outside_diameter, starts, pressure_angle, addendum, tip_radius, dedendum):
+    """Three teeth and the land below them, each an open polygon (n, 2) of (s, rho) from left to right."""
     pitch_diameter = outside_diameter - 2 * addendum * module
     lead = math.asin(starts * module / pitch_diameter)
     pitch = math.pi * module / math.cos(lead)
     alpha = math.atan(math.tan(math.radians(pressure_angle)) / math.cos(lead))
     top = outside_diameter / 2
-    root = top - (addendum + dedendum) * module
     radius = tip_radius * module
-    # flank line through (pitch/4, pitch radius)
+
     def flank(rho):
         return pitch / 4 - (rho - pitch_diameter / 2) * math.tan(alpha)
 
     # centre of the tip arc: `radius` below the top and `radius` inside the flank
     cy = top - radius
     cx = flank(cy) - radius / math.cos(alpha)
-    turn = np.linspace(math.pi / 2, alpha, 3000)
+    turn = math.pi / 2 + (alpha - math.pi / 2) * ARC
     arc = np.column_stack([cx + radius * np.cos(turn), cy + radius * np.sin(turn)])
-    right = np.vstack([arc, [[flank(root), root], [pitch / 2, root]]])
-    left = right[::-1] * [-1, 1]
-    return np.vstack([left, right]), pitch
+    right = np.vstack([arc, [[flank(DEEP), DEEP]]])
+    tooth = np.vstack([right[::-1] * [-1, 1], right])
+    root = top - (addendum + dedendum) * module
+    teeth = [tooth + [k * pitch, 0] for k in (-1, 0, 1)]
+    return [*teeth, np.array([[-1e4, root], [1e4, root]])], pitch
 
 
-def insert_outline(tip_radius, width):
-    """A square insert as a polygon reaching down to the axis."""
-    return np.array([[-width / 2, 0.0], [-width / 2, tip_radius], [width / 2, tip_radius], [width / 2, 0.0]])
+def insert_outlines(*, tip_radius, width, corner_radius=0.0):
+    """One insert reaching down past the axis, as an open polygon from left to right."""
+    turn = math.pi / 2 * (1 - ARC)
+    arc = np.column_stack(
+        [
+            width / 2 - corner_radius * (1 - np.cos(turn)),
+            tip_radius - corner_radius * (1 - np.sin(turn)),
+        ]
+    )
+    right = np.vstack([arc, [[width / 2, DEEP]]])
+    return [np.vstack([right[::-1] * [-1, 1], right])]
 
 
-def depth_in_outline(outline, pitch, s, rho):
-    """Signed distance, positive inside, to a row of teeth (three of them are enough)."""
-    if pitch:
-        s = s - pitch * round(s / pitch)
-        line = np.vstack([outline + [k * pitch, 0] for k in (-1, 0, 1)])
-    else:
-        line = outline
+def depth_in_outline(line, s, rho):
+    """Signed distance, positive below the open polygon."""
     a, b = line[:-1], line[1:]
     edge = b - a
     length2 = (edge**2).sum(axis=1)
     t = np.clip((([s, rho] - a) * edge).sum(axis=1) / np.where(length2 > 0, length2, 1), 0, 1)
     distance = np.hypot(*(a + t[:, None] * edge - [s, rho]).T).min()
-    # inside = below the line, which runs from left to right
+    # the outlines rise and fall: below means that an odd number of segments stand above
     crosses = (np.minimum(a[:, 0], b[:, 0]) <= s) & (np.maximum(a[:, 0], b[:, 0]) > s)
-    if not crosses.any():
-        return -distance
     k = np.flatnonzero(crosses)
     height = a[k, 1] + (s - a[k, 0]) / edge[k, 0] * edge[k, 1]
-    return distance if rho < height.max() else -distance
+    return distance if (height > rho).sum() % 2 else -distance
 
 
-def field(point, motion, gash_angle, gash_shift, outline, pitch):
-    """Largest depth of `point` over every crossing of every gash; motion as in CutterMotion."""
+def depth_in_outlines(outlines, pitch, s, rho):
+    """Signed distance to a union of outlines: the deepest of them."""
+    if pitch:
+        s = s - pitch * round(s / pitch)
+    return max(depth_in_outline(line, s, rho) for line in outlines)
+
+
+def field(point, motion, cutter, outlines, pitch=0.0):
+    """Largest depth of `point` over every crossing of every gash, and the instant [samples] of it."""
     x, y, z = motion.mount.rotation @ point + motion.mount.translation
 
     def seen(work, centre):
@@ -72,10 +84,14 @@ def field(point, motion, gash_angle, gash_shift, outline, pitch):
     )
     local = (lab - centre) @ motion.basis.T
     turned = np.unwrap(np.arctan2(local[:, 1], local[:, 0]))
-    best = -math.inf
-    for phase, shift in zip(gash_angle, gash_shift, strict=True):
+    reach = np.hypot(local[:, 0], local[:, 1])
+    best, when = -math.inf, math.nan
+    for phase, shift in zip(cutter.gash_angle, cutter.gash_shift, strict=True):
         phase_lag = (tool + phase - turned) / (2 * math.pi)
-        for i in np.flatnonzero(np.floor(phase_lag[:-1]) != np.floor(phase_lag[1:])):
+        crossed = np.floor(phase_lag[:-1]) != np.floor(phase_lag[1:])
+        # an edge that misses by more than the best so far needs no bisection
+        crossed &= reach[:-1].clip(max=reach[1:]) - cutter.radius < 0.5 - best
+        for i in np.flatnonzero(crossed):
             goal = max(math.floor(phase_lag[i]), math.floor(phase_lag[i + 1])) * 2 * math.pi
 
             def lag(f, i=i, phase=phase, goal=goal):
@@ -93,6 +109,9 @@ def field(point, motion, gash_angle, gash_shift, outline, pitch):
                 else:
                     high = middle
             q = lag(low)[1]
-            depth = depth_in_outline(outline, pitch, q[2] - shift, math.hypot(q[0], q[1]))
-            best = max(best, depth)
-    return best
+            depth = depth_in_outlines(outlines, pitch, q[2] - shift, math.hypot(q[0], q[1]))
+            if math.isfinite(cutter.half_length):
+                depth = min(depth, cutter.half_length - abs(q[2] - cutter.shift))
+            if depth > best:
+                best, when = depth, i + low
+    return best, when

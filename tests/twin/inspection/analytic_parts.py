@@ -79,7 +79,9 @@ def gear_mesh(
     rings = []
     for z in layers:
         radius, angle = ring(z)
-        rings.append(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(radius), z)]))
+        rings.append(
+            np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(radius), z)])
+        )
     return loft(rings, bore=bore, offset=eccentricity)
 
 
@@ -135,7 +137,9 @@ def loft(rings, *, bore: float = 0.0, offset=(0.0, 0.0)):
     i = np.arange(n)
     j = (i + 1) % n
     quads = [
-        np.concatenate([np.column_stack([a + i, a + j, a + n + j]), np.column_stack([a + i, a + n + j, a + n + i])])
+        np.concatenate(
+            [np.column_stack([a + i, a + j, a + n + j]), np.column_stack([a + i, a + n + j, a + n + i])]
+        )
         for a in range(0, n * (layers - 1), n)
     ]
     top = n * (layers - 1)

@@ -10,7 +10,9 @@ from twin.inspection.nominal import GearNominal
 @pytest.fixture(scope="session")
 def parts():
     """The module of analytic meshes beside this file."""
-    spec = importlib.util.spec_from_file_location("analytic_parts", Path(__file__).with_name("analytic_parts.py"))
+    spec = importlib.util.spec_from_file_location(
+        "analytic_parts", Path(__file__).with_name("analytic_parts.py")
+    )
     module = importlib.util.module_from_spec(spec)
     sys.modules["analytic_parts"] = module
     spec.loader.exec_module(module)

@@ -32,7 +32,7 @@ def torus_grid(sections):
     return sections.reshape(-1, 3), faces.reshape(-1, 3)
 
 
-def gear_part(teeth=20, module=2.0, width=20.0, bore=6.0, around=75, along=166, helix_deg=0.0, feed=2.0):
+def gear_part(*, teeth=20, module=2.0, width=20.0, bore=6.0, around=75, along=166, helix_deg=0.0, feed=2.0):
     """Involute gear with feed marks of 4.89 µm and a helix slope of 6 µm; NaN off the flanks."""
     radius, alpha = teeth * module / 2, np.radians(20.0)
     base, tip, root = radius * np.cos(alpha), radius + module, radius - 1.25 * module
@@ -45,7 +45,9 @@ def gear_part(teeth=20, module=2.0, width=20.0, bore=6.0, around=75, along=166, 
     tips = np.linspace(-flank_angle[-1], flank_angle[-1], rest // 2 + 2)[1:-1]
     roots = np.linspace(half, 2 * np.pi / teeth - half, rest - rest // 2)
     angle = np.concatenate([-flank_angle, tips, flank_angle[::-1], roots])
-    radii = np.concatenate([flank_radius, np.full(len(tips), tip), flank_radius[::-1], np.full(len(roots), root)])
+    radii = np.concatenate(
+        [flank_radius, np.full(len(tips), tip), flank_radius[::-1], np.full(len(roots), root)]
+    )
     side = np.concatenate([-np.ones(flank), np.zeros(len(tips)), np.ones(flank), np.zeros(len(roots))])
     angle = (np.arange(teeth)[:, None] * 2 * np.pi / teeth + angle).ravel()
     radii, side = np.tile(radii, teeth), np.tile(side, teeth)
@@ -55,16 +57,18 @@ def gear_part(teeth=20, module=2.0, width=20.0, bore=6.0, around=75, along=166, 
     deviation = np.where(side != 0, mark_um[:, None] + side * slope_um[:, None], np.nan)
     twist = z[:, None] * np.tan(np.radians(helix_deg)) / radius
     turned = angle + twist + np.nan_to_num(side * deviation) * 1e-3 / base
-    outer = np.stack([radii * np.cos(turned), radii * np.sin(turned), np.broadcast_to(z[:, None], turned.shape)], -1)
+    outer = np.stack(
+        [radii * np.cos(turned), radii * np.sin(turned), np.broadcast_to(z[:, None], turned.shape)], -1
+    )
     ring = np.stack([bore * np.cos(angle), bore * np.sin(angle), np.zeros_like(angle)], -1)
-    rear = ring + [0, 0, -width]
+    rear = ring + np.array([0, 0, -width])
     vertices, faces = torus_grid(np.concatenate([outer, rear[None], ring[None]]))
     values = np.concatenate([deviation, np.full((2, len(angle)), np.nan)])
     return Part(vertices=vertices, faces=faces, deviation_um=values.ravel())
 
 
 def hexagon_section(points=1200, across=17.0, tip_radius=40.0, ratio=2.0):
-    """Outline a three-insert head leaves: w(θ) = A e^{-jθ} + R e^{j(i-1)θ}, smallest radius of all inserts."""
+    """Outline a three-insert head leaves: w(θ) = A e^{-jθ} - R e^{j(i-1)θ}, one face turned round."""
     distance = across / 2 + tip_radius
     theta = np.linspace(-np.pi / 7, np.pi / 7, points // 6 * 3)
     face = distance * np.exp(-1j * theta) - tip_radius * np.exp(1j * (ratio - 1) * theta)
@@ -79,22 +83,32 @@ def hexagon_part(width=12.0, along=24):
     outline = hexagon_section()
     z = np.linspace(0.0, -width, along)
     outer = np.concatenate(
-        [np.broadcast_to(outline, (along, *outline.shape)), np.broadcast_to(z[:, None, None], (along, len(outline), 1))], -1
+        [
+            np.broadcast_to(outline, (along, *outline.shape)),
+            np.broadcast_to(z[:, None, None], (along, len(outline), 1)),
+        ],
+        -1,
     )
     scale = 3.0 / np.linalg.norm(outline, axis=1, keepdims=True)
     ring = np.concatenate([outline * scale, np.zeros((len(outline), 1))], -1)
-    vertices, faces = torus_grid(np.concatenate([outer, (ring + [0, 0, -width])[None], ring[None]]))
+    vertices, faces = torus_grid(np.concatenate([outer, (ring + np.array([0, 0, -width]))[None], ring[None]]))
     angle = np.arctan2(vertices[:, 1], vertices[:, 0])
     centre = np.round(angle / (np.pi / 3)) * np.pi / 3
     deviation = (vertices[:, 0] * np.cos(centre) + vertices[:, 1] * np.sin(centre) - 8.5) * 1e3
-    return Part(vertices=vertices, faces=faces, deviation_um=np.where(np.hypot(*vertices[:, :2].T) > 8, deviation, np.nan))
+    return Part(
+        vertices=vertices,
+        faces=faces,
+        deviation_um=np.where(np.hypot(*vertices[:, :2].T) > 8, deviation, np.nan),
+    )
 
 
-def trace(tooth, low, high, slope, wave, points=480, seed=0):
+def trace(tooth, low, high, *, slope, wave, points=480, seed=0):
     position = np.linspace(low, high, points)
     start, end = low + 0.1 * (high - low), high - 0.1 * (high - low)
     rng = np.random.default_rng(seed)
-    ripple = wave * np.cos(2 * np.pi * 9 * (position - low) / (high - low)) + 0.1 * rng.standard_normal(points)
+    ripple = wave * np.cos(2 * np.pi * 9 * (position - low) / (high - low)) + 0.1 * rng.standard_normal(
+        points
+    )
     deviation = slope * (position - (start + end) / 2) / (end - start) + ripple
     deviation = deviation - 12.0 * np.clip((position - end) / (high - end), 0, None) ** 2
     used = (position >= start) & (position <= end)
@@ -113,8 +127,8 @@ def trace(tooth, low, high, slope, wave, points=480, seed=0):
 
 def flank(sign, teeth=20):
     chosen = (1, 6, 11, 16)
-    profile = tuple(trace(t, 5.0, 11.6, sign * 2.5 + 0.2 * t, 0.6, seed=t) for t in chosen)
-    helix = tuple(trace(t, -20.0, 0.0, sign * 3.0 - 0.3 * t, 2.2, seed=50 + t) for t in chosen)
+    profile = tuple(trace(t, 5.0, 11.6, slope=sign * 2.5 + 0.2 * t, wave=0.6, seed=t) for t in chosen)
+    helix = tuple(trace(t, -20.0, 0.0, slope=sign * 3.0 - 0.3 * t, wave=2.2, seed=50 + t) for t in chosen)
     k = np.arange(teeth)
     cumulative = 9.0 * np.sin(2 * np.pi * k / teeth + sign) + 0.5 * np.cos(2 * np.pi * 5 * k / teeth)
     pitch = cumulative - np.roll(cumulative, 1)
@@ -147,6 +161,9 @@ def gear_inspection():
         root_diameter_mm=35.0002,
         span_teeth=3,
         span_mm=15.3209,
+        pin_diameter_mm=3.5,
+        over_pins_mm=44.9293,
+        runout_um=18.3,
         left=flank(1.0),
         right=flank(-1.0),
         reference=nominal,
@@ -155,14 +172,27 @@ def gear_inspection():
         measuring_plane_mm=-10.0,
         phase_deg=0.0,
         accuracy_class={"profile_slope": 5, "profile_total": 6, "helix_total": 7, "overall": 7},
-        tolerances_um={"profile_slope": 14.0, "profile_total": 22.0, "helix_total": 24.0, "single_pitch": 17.0},
+        tolerances_um={
+            "profile_slope": 14.0,
+            "profile_total": 22.0,
+            "helix_total": 24.0,
+            "single_pitch": 17.0,
+        },
     )
     return Inspection(gear=gear, nominal=nominal, verdict=Verdict.IN)
 
 
 def polygon_inspection():
     faces = tuple(
-        Face(direction_deg=60.0 * k, distance_mm=8.4956, mid_distance_mm=8.5, bow_um=13.0, flatness_um=13.2, twist_deg_per_mm=0.0)
+        Face(
+            direction_deg=60.0 * k,
+            distance_mm=8.4956,
+            width_mm=9.815,
+            mid_distance_mm=8.5,
+            bow_um=13.0,
+            flatness_um=13.2,
+            twist_deg_per_mm=0.0,
+        )
         for k in range(6)
     )
     nominal = PolygonNominal(number_of_sides=6, across_flats_mm=17.0)

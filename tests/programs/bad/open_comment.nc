@@ -1,0 +1,3 @@
+(HT9004 2:5)
+G00 (never closed
+M30

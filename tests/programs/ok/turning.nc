@@ -1,0 +1,16 @@
+(final X0. Z0. C90.)
+% 
+O0003 (out of sync: turning, orientation, C axis)
+G50 S1500
+G00 X-20. Z-1. T0101 M08
+G96 S120 M03
+G99 G01 X-60. F0.2
+G97 S400
+G01 Z-30. F0.1
+G04 P500
+M09
+M05
+M19
+G98 G01 C90. F3600
+G28 U0 W0
+M30

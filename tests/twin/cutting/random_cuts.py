@@ -1,0 +1,161 @@
+"""Hypothesis strategies for tools and recorded-like motions, with what the brute-force evaluator needs."""
+
+import math
+from dataclasses import dataclass
+
+import brute_force
+import numpy as np
+import synthetic_motion
+from hypothesis import strategies as st
+
+from twin.cutters.cutter import Cutter
+from twin.cutters.hob import Hob
+from twin.cutters.polygon_head import PolygonHead
+from twin.cutting.field import DepthField
+from twin.cutting.motion import CutterMotion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RandomCut:
+    """A tool, its motion, and where stock stands."""
+
+    cutter: Cutter
+    motion: CutterMotion
+    outlines: list
+    pitch: float
+    """of the outlines [mm], 0 = single"""
+    radii: tuple[float, float]
+    """of the stock within the tool's reach [mm]"""
+    half_length: float
+    """of the stock about z = 0 [mm]"""
+    feature: float
+    """size of a tooth or an insert [mm]"""
+
+    def field(self) -> DepthField:
+        """The kernel's field, for blocks that stand a feature out of the stock."""
+        room = self.feature
+        return DepthField(
+            self.cutter,
+            self.motion,
+            self.radii[1] + 2 * room,
+            (-self.half_length - room, self.half_length + room),
+        )
+
+    def points(self, n, seed):
+        """(n, 3) random points of the stock."""
+        rng = np.random.default_rng(seed)
+        r, angle = rng.uniform(*self.radii, n), rng.uniform(0.0, 2.0 * math.pi, n)
+        return np.column_stack(
+            [r * np.cos(angle), r * np.sin(angle), rng.uniform(-self.half_length, self.half_length, n)]
+        )
+
+
+def between(low, high):
+    return st.floats(low, high, allow_nan=False)
+
+
+@st.composite
+def hobbings(draw):
+    """A hob of any hand, starts and length; a gear of any helix; about two millimetres of feed."""
+    module = draw(between(1.0, 4.0))
+    starts = draw(st.integers(1, 3))
+    teeth = draw(st.integers(12, 40))
+    helix = draw(between(-30.0, 30.0))
+    hob = Hob(
+        normal_module_mm=module,
+        outside_diameter_mm=draw(between(12.0, 40.0)) * module,
+        starts=starts,
+        gashes=draw(st.integers(6, 15)),
+        hand=draw(st.sampled_from(["right", "left"])),
+        tip_radius_factor=draw(st.sampled_from([0.0, 0.1, 0.38])),
+        length_mm=draw(st.sampled_from([None, 4.0 * module])),
+    )
+    root = module * (teeth / 2.0 / math.cos(math.radians(helix)) - 1.25)
+    cutter, motion = synthetic_motion.hobbing(
+        hob,
+        teeth=teeth,
+        helix_deg=helix,
+        tip_x=root - draw(st.sampled_from([0.0, 0.0, 0.7])) * module,
+        z=(module, -module),
+        feed=draw(between(1.0, 4.0)),
+        step_deg=draw(between(1.0, 15.0)),
+        swivel_error=draw(st.sampled_from([0.0, 0.05])),
+    )
+    outlines, pitch = brute_force.hob_outlines(
+        module=module,
+        outside_diameter=hob.outside_diameter_mm,
+        starts=starts,
+        pressure_angle=20.0,
+        addendum=1.25,
+        tip_radius=hob.tip_radius_factor,
+        dedendum=1.25,
+    )
+    return RandomCut(
+        cutter=cutter,
+        motion=draw(spoiled(motion)),
+        outlines=outlines,
+        pitch=pitch,
+        radii=(root - 0.5 * module, root + 2.3 * module),
+        half_length=1.5 * module,
+        feature=module,
+    )
+
+
+@st.composite
+def polygon_turnings(draw):
+    """A head of one to three inserts at the ratios of geometry.md 3."""
+    head = PolygonHead(
+        inserts=draw(st.integers(1, 3)),
+        tip_radius_mm=draw(between(25.0, 60.0)),
+        corner_radius_mm=draw(st.sampled_from([0.0, 0.4])),
+    )
+    across = draw(between(10.0, 30.0))
+    cutter, motion = synthetic_motion.polygon_turning(
+        head,
+        ratio=draw(st.sampled_from([2, 3, 6, -3])),
+        across_flats=across,
+        work_turns=3,
+        z=(1.0, -1.0),
+        step_deg=draw(between(0.5, 5.0)),
+    )
+    return RandomCut(
+        cutter=cutter,
+        motion=draw(spoiled(motion)),
+        outlines=brute_force.insert_outlines(
+            tip_radius=head.tip_radius_mm, width=2.0, corner_radius=head.corner_radius_mm
+        ),
+        pitch=0.0,
+        radii=(0.45 * across, 0.6 * across),
+        half_length=2.0,
+        feature=1.0,
+    )
+
+
+@st.composite
+def spoiled(draw, motion):
+    """The motion at a changing, stopping or reversing speed, with servo noise, past a badly clamped part."""
+    n = len(motion.time_s)
+    u = np.linspace(0.0, 1.0, n)
+    way = draw(st.sampled_from(["steady", "changing", "stopping", "reversing"]))
+    if way == "changing":
+        speed = 0.3 + 0.6 * np.abs(np.sin(draw(between(1.0, 20.0)) * u))
+        motion = synthetic_motion.at_speed(motion, speed * min(1.0, (n - 1.01) / speed.sum()))
+    elif way == "stopping":
+        # S down to zero within the cut, a dwell, S up again
+        ramp = np.clip(np.abs(u - 0.5) * draw(between(8.0, 30.0)) - 0.5, 0.0, 1.0)
+        motion = synthetic_motion.at_speed(motion, 0.99 * ramp)
+    elif way == "reversing":
+        speed = 1.2 * np.cos(math.pi * u * draw(between(0.6, 0.98)))
+        motion = synthetic_motion.at_speed(motion, speed * (n - 2) / np.cumsum(speed).max())
+    noise = draw(st.sampled_from([0.0, 1.0]))
+    if noise:
+        rng = np.random.default_rng(draw(st.integers(0, 1000)))
+        motion = synthetic_motion.jittered(motion, rng)
+    if draw(st.booleans()):
+        motion = synthetic_motion.clamped(
+            motion, eccentricity=draw(between(0.0, 0.4)), tilt=draw(between(0.0, 0.02))
+        )
+    return motion
+
+
+cuts = st.one_of(hobbings(), polygon_turnings())

@@ -1,0 +1,102 @@
+"""The field against an evaluator that shares nothing with it, and its gradient against differences."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_cuts import cuts
+
+from twin.cutters.hob import Hob
+from twin.cutting.field import DepthField
+
+few = settings(derandomize=True, deadline=None, max_examples=20, database=None)
+
+TOLERANCE = 1e-6
+"""[mm] of two evaluators that both settle far below 0.1 µm"""
+
+
+def over_all_passes(field, point):
+    passes = np.arange(field.passes.count)
+    return field.evaluate(np.repeat(point[None], len(passes), axis=0), passes, gradient=True)
+
+
+@few
+@given(cut=cuts, seed=st.integers(0, 1000))
+def test_field_is_the_deepest_crossing_of_all_edges(cut, seed, brute_force):
+    field = cut.field()
+    ends = np.unique(np.concatenate([field.passes.first, field.passes.last]))
+    for point in cut.points(3, seed):
+        depth = over_all_passes(field, point).depth.max(initial=-math.inf)
+        expected, instant = brute_force.field(point, cut.motion, cut.cutter, cut.outlines, cut.pitch)
+        if expected < -0.5 * cut.feature:  # so far away passes are left out
+            assert depth <= expected + TOLERANCE
+            continue
+        if abs(expected) > TOLERANCE:
+            assert (depth > 0) == (expected > 0)
+        # next to the rake plane at which the tool stopped, that plane is the nearer surface
+        turned = np.interp(instant, np.arange(len(cut.motion.tool_angle)), cut.motion.tool_angle)
+        at_end = np.interp(ends, np.arange(len(cut.motion.tool_angle)), cut.motion.tool_angle)
+        if np.abs(turned - at_end).min() > math.pi:
+            assert depth == pytest.approx(expected, abs=TOLERANCE)
+
+
+@few
+@given(cut=cuts, seed=st.integers(0, 1000))
+def test_gradient_is_the_slope_of_the_field(cut, seed):
+    field = cut.field()
+    rng = np.random.default_rng(seed)
+    points = cut.points(60, seed)
+    passes = rng.integers(0, field.passes.count, len(points))
+    meeting = field.evaluate(points, passes, gradient=True)
+    h = 1e-5
+    slope = np.stack(
+        [
+            (field.evaluate(points + e, passes).depth - field.evaluate(points - e, passes).depth) / (2 * h)
+            for e in h * np.eye(3)
+        ],
+        axis=1,
+    )
+    # but for the points within h of a ridge or of the boundary between two samples
+    good = np.linalg.norm(slope - meeting.gradient, axis=1) < 1e-3
+    assert good.mean() >= 0.95
+
+
+@few
+@given(cut=cuts, seed=st.integers(0, 1000))
+def test_bounds_hold_around_a_point(cut, seed):
+    """The change of the field and its departure from the tangent, anywhere within the radius."""
+    field = cut.field()
+    rng = np.random.default_rng(seed)
+    n = 400
+    points = cut.points(n, seed)
+    passes = rng.integers(0, field.passes.count, n)
+    radius = cut.feature * 10.0 ** rng.uniform(-2.5, 0.0, n)
+    step = rng.standard_normal((n, 3))
+    step *= (radius * rng.uniform(0.0, 1.0, n) / np.linalg.norm(step, axis=1))[:, None]
+    here = field.evaluate(points, passes, gradient=True)
+    there = field.evaluate(points + step, passes)
+    change, bent, excess = field.bound(here, passes, radius)
+    assert (np.abs(there.depth - here.depth) <= change + 1e-9).all()
+    tangent = here.depth + (here.gradient * step).sum(axis=1)
+    assert (there.depth <= tangent + bent + excess + 1e-9).all()
+
+
+@pytest.mark.parametrize("tremble", [0.0, 1e-9, 1e-7, 1e-6])
+def test_standing_spindle_trembling_in_its_servo_adds_nothing(synthetic, tremble):
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=70.0)
+    cutter, motion = synthetic.hobbing(hob, teeth=20, tip_x=17.5, z=(2, -2), feed=2, step_deg=5)
+    speed = np.concatenate(
+        [np.ones(700), np.linspace(1, 0, 50), np.zeros(300), np.linspace(0, 1, 50), np.ones(300)]
+    )
+    whole = DepthField(cutter, synthetic.at_speed(motion, speed[speed > 0]), 22.0, (-3.0, 3.0))
+    noise = {"slide": 20 * tremble, "work": tremble, "tool": tremble}
+    dwelling = synthetic.jittered(synthetic.at_speed(motion, speed), np.random.default_rng(0), **noise)
+    field = DepthField(cutter, dwelling, 22.0, (-3.0, 3.0))
+    rng = np.random.default_rng(1)
+    r, angle = rng.uniform(17.0, 22.0, 20), rng.uniform(0.0, 2.0 * math.pi, 20)
+    for point in np.column_stack([r * np.cos(angle), r * np.sin(angle), rng.uniform(-2.0, 2.0, 20)]):
+        expected = over_all_passes(whole, point).depth.max()
+        # the tremble itself, on the tips' radius and across the work
+        assert over_all_passes(field, point).depth.max() == pytest.approx(expected, abs=1e-9 + 200 * tremble)

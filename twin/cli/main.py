@@ -1,0 +1,104 @@
+"""Arguments in, exit code out. Commands import what they need when they run: `check` stays light."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from twin.errors import ExitCode, HobtwinError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command. Returns the exit code of the contract: 0 fine, 1 finding, 2 usage, 3 our fault."""
+    options = _parser().parse_args(arguments)
+    from controller.alarms import AlarmError, ControllerError  # noqa: PLC0415
+
+    try:
+        return int(options.command(options))
+    except HobtwinError as error:
+        print(error, file=sys.stderr)
+        return int(error.exit_code)
+    except AlarmError as error:
+        print(error, file=sys.stderr)
+        return int(ExitCode.USAGE if error.alarm.number in UNREADABLE else ExitCode.FINDING)
+    except ControllerError as error:
+        print(error, file=sys.stderr)
+        return int(ExitCode.USAGE)
+    except KeyboardInterrupt:
+        print("interrupted; nothing was written", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        return int(ExitCode.FINE)
+    except Exception as error:  # noqa: BLE001 - the last resort: a fault of ours is said, not thrown
+        if options.debug:
+            raise
+        print(
+            f"hobtwin: internal fault: {type(error).__name__}: {error} (run again with --debug for the trace)",
+            file=sys.stderr,
+        )
+        return int(ExitCode.FAULT)
+
+
+UNREADABLE = frozenset({"HT9000", "HT9001"})
+"""Alarms that mean unreadable input rather than a finding in a program."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="hobtwin",
+        description="Run an NC program on an emulated hobbing lathe, cut the part, inspect it.",
+        epilog="exit codes: 0 fine, 1 a finding, 2 usage or unreadable input, 3 a fault of hobtwin",
+    )
+    parser.add_argument("--debug", action="store_true", help="show the trace of an internal fault")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    run = commands.add_parser("run", help="run a job: program, machine, cut, inspection, report")
+    run.add_argument("job", type=Path, metavar="JOB", help="a job folder or a job.toml")
+    run.add_argument("--out", type=Path, metavar="DIR", help="result folder (default: out/<job name>)")
+    run.add_argument("--ideal", action="store_true", help="axes follow their setpoints exactly")
+    run.add_argument("--cell-mm", type=float, metavar="MM", help="cell of the cutting grid (default: chosen)")
+    run.add_argument("--strict", action="store_true", help="warnings are findings too")
+    run.add_argument("--quiet", action="store_true", help="no progress")
+    run.set_defaults(command=_run)
+
+    check = commands.add_parser("check", help="check a program without machine and metal")
+    check.add_argument("target", type=Path, metavar="JOB_or_PROGRAM")
+    check.add_argument("--setup", choices=("hobbing", "tilted"), help="of a bare program (default: hobbing)")
+    check.add_argument("--parameter", action="append", default=[], metavar="8200#0=1")
+    check.add_argument("--signal", action="append", default=[], metavar="NOZAGC=1")
+    check.add_argument("--strict", action="store_true", help="warnings are findings too")
+    check.add_argument("--format", choices=("text", "json", "github"), default="text")
+    check.set_defaults(command=_check)
+
+    inspect = commands.add_parser("inspect", help="measure a mesh [mm]")
+    inspect.add_argument("mesh", type=Path, metavar="MESH", help="STL, PLY, OBJ or GLB")
+    inspect.add_argument("--job", type=Path, metavar="JOB", help="take the nominal from a job")
+    inspect.add_argument("--teeth", type=int)
+    inspect.add_argument("--module", type=float, metavar="MM")
+    inspect.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="+ right-hand")
+    inspect.add_argument("--profile-shift", type=float, default=0.0)
+    inspect.add_argument("--pressure-angle", type=float, default=20.0, metavar="DEG")
+    inspect.add_argument("--class", type=int, dest="accuracy_class", metavar="A", help="ISO 1328-1 class")
+    inspect.add_argument("--sides", type=int)
+    inspect.add_argument("--across-flats", type=float, metavar="MM")
+    inspect.add_argument("--format", choices=("text", "json"), default="text")
+    inspect.set_defaults(command=_inspect)
+    return parser
+
+
+def _run(options: argparse.Namespace) -> ExitCode:
+    from twin.cli.run import run_command  # noqa: PLC0415
+
+    return run_command(options)
+
+
+def _check(options: argparse.Namespace) -> ExitCode:
+    from twin.cli.check import check_command  # noqa: PLC0415
+
+    return check_command(options)
+
+
+def _inspect(options: argparse.Namespace) -> ExitCode:
+    from twin.cli.inspect import inspect_command  # noqa: PLC0415
+
+    return inspect_command(options)

@@ -1,0 +1,39 @@
+"""`hobtwin run`"""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from twin.errors import ExitCode, InputError
+from twin.job import read_job
+from twin.outcome import Options, Outcome
+from twin.progress import Bar, Lines, Reporter, Silent
+from twin.run import run_job
+from twin.summary import lines
+
+
+def run_command(options: argparse.Namespace) -> ExitCode:
+    """Run a job and say what came out. Raises HobtwinError and ControllerError."""
+    cell = options.cell_mm
+    if cell is not None and not (math.isfinite(cell) and cell > 0):
+        raise InputError(f"--cell-mm {cell:g}", remedy="valid: above 0, for example 0.1")
+    job = read_job(options.job)
+    out = options.out or Path("out") / job.name
+    settings = Options(ideal=options.ideal, cell_mm=cell)
+    if options.quiet or not sys.stderr.isatty():
+        reporter: Reporter = Silent() if options.quiet else Lines()
+        outcome = run_job(job, out, settings, reporter)
+    else:
+        with Bar() as bar:
+            outcome = run_job(job, out, settings, bar)
+    for line in lines(outcome):
+        print(line)
+    print(f"report: {out / 'report.html'}")
+    return _code(outcome, strict=options.strict)
+
+
+def _code(outcome: Outcome, *, strict: bool) -> ExitCode:
+    if strict and (outcome.session.warnings or outcome.cut.notes):
+        return ExitCode.FINDING
+    return outcome.exit_code

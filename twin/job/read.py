@@ -1,0 +1,185 @@
+"""Read a job: a folder with a job.toml, or the file itself."""
+
+import dataclasses
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+import msgspec
+
+from twin.cutters.hob import Hob
+from twin.cutters.polygon_head import PolygonHead
+from twin.errors import HobtwinError, InputError, Place
+from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
+from twin.job.locate import line_of
+from twin.job.schema import InspectionTable, Job, MachineTable, Reference, SetupTable, Tool, WorkTable
+
+T = TypeVar("T")
+
+TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead}
+NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
+TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection")
+
+
+def read_job(path: Path) -> Job:
+    """Read and check a job.
+
+    Raises InputError, with file and line, for whatever is not readable, not known, or impossible.
+    """
+    file = path / "job.toml" if path.is_dir() else path
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as cause:
+        why = cause.strerror if isinstance(cause, OSError) and cause.strerror else "not UTF-8 text"
+        raise InputError(f"cannot read the job: {why}", place=Place(file=str(file))) from cause
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as cause:
+        raise InputError(f"not TOML: {_plain(cause)}", place=_syntax_place(file, cause)) from cause
+    return _Reader(file, text, data).job()
+
+
+def _plain(cause: tomllib.TOMLDecodeError) -> str:
+    return re.sub(r"\s*\(at .*\)$", "", str(cause))
+
+
+def _syntax_place(file: Path, cause: tomllib.TOMLDecodeError) -> Place:
+    at = re.search(r"line (\d+), column (\d+)", str(cause))
+    return Place(file=str(file), line=int(at[1]), column=int(at[2])) if at else Place(file=str(file))
+
+
+class _Reader:
+    """The tables of one job file, turned into dataclasses."""
+
+    def __init__(self, file: Path, text: str, data: dict[str, Any]) -> None:
+        self.file = file
+        self.text = text
+        self.data = data
+
+    def job(self) -> Job:
+        self._known(self.data, TABLES, ())
+        folder = self.file.resolve().parent
+        work = self._table(WorkTable, ("work",))
+        tools = self._tools()
+        job = Job(
+            name=folder.name,
+            path=self.file,
+            machine=self._table(MachineTable, ("machine",)),
+            work=work,
+            setup=self._setup(),
+            tools=tools,
+            program=self._program(),
+            nominal=self._nominal(work, tools),
+            inspection=self._table(InspectionTable, ("inspection",)),
+        )
+        if work.bore_mm >= work.diameter_mm:
+            self._fail(("work", "bore_mm"), f"bore_mm {work.bore_mm:g} is not inside diameter_mm {work.diameter_mm:g}")
+        return job
+
+    def _setup(self) -> SetupTable:
+        raw = self._raw(("setup",))
+        self._known(raw, ("reference", "offsets", "tool_offsets"), ("setup",))
+        table = self._table(SetupTable, ("setup",))
+        if "reference" in raw:
+            table = dataclasses.replace(table, reference=self._table(Reference, ("setup", "reference")))
+        return table
+
+    def _tools(self) -> dict[int, Tool]:
+        if ("tool" in self.data) == ("tools" in self.data):
+            self._fail((), "a job needs either [tool] or [tools.1], [tools.2], …")
+        if "tool" in self.data:
+            return {0: self._tagged(TOOLS, ("tool",))}
+        numbered = self._raw(("tools",))
+        tools: dict[int, Tool] = {}
+        for name in numbered:
+            if not re.fullmatch(r"[1-9]\d?", name):
+                self._fail(("tools", name), f"tools.{name} is no tool number", "1 to 99")
+            tools[int(name)] = self._tagged(TOOLS, ("tools", name))
+        return tools
+
+    def _program(self) -> Path:
+        raw = self._raw(("program",))
+        self._known(raw, ("file",), ("program",))
+        name = raw.get("file")
+        if not isinstance(name, str):
+            self._fail(("program",), "the job names no program", 'file = "program.nc" in [program]')
+        path = self.file.parent / name
+        if not path.is_file():
+            self._fail(("program", "file"), f"there is no program {name!r} beside the job")
+        return path
+
+    def _nominal(self, work: WorkTable, tools: dict[int, Tool]) -> Nominal | None:
+        if "nominal" not in self.data:
+            return None
+        nominal: Nominal = self._tagged(NOMINALS, ("nominal",))
+        if isinstance(nominal, PolygonNominal):
+            if nominal.number_of_sides < 3:
+                self._fail(("nominal", "number_of_sides"), "a polygon has at least 3 sides")
+            return nominal
+        if abs(nominal.helix_angle_deg) >= 90 or nominal.number_of_teeth < 3 or nominal.normal_module_mm <= 0:
+            self._fail(
+                ("nominal",),
+                "no such gear",
+                "number_of_teeth from 3, normal_module_mm above 0, helix_angle_deg between -90 and 90",
+            )
+        tool = next(iter(tools.values()))
+        filled: dict[str, float] = {}
+        if nominal.tip_diameter_mm is None:
+            filled["tip_diameter_mm"] = work.diameter_mm
+        if nominal.face_width_mm is None:
+            filled["face_width_mm"] = work.length_mm
+        if isinstance(tool, Hob):
+            filled["dedendum_factor"] = tool.addendum_factor
+            filled["tip_radius_factor"] = tool.tip_radius_factor
+        return dataclasses.replace(nominal, **filled)
+
+    def _tagged(self, kinds: Mapping[str, type], path: tuple[str, ...]) -> Any:  # noqa: ANN401
+        raw = self._raw(path)
+        kind = raw.get("kind")
+        if kind not in kinds:
+            self._fail((*path, "kind"), f"unknown kind {kind!r} of {'.'.join(path)}", ", ".join(kinds))
+        return self._table(kinds[kind], path, extra=("kind",))
+
+    def _raw(self, path: tuple[str, ...]) -> dict[str, Any]:
+        value: Any = self.data
+        for name in path:
+            value = value.get(name, {})
+            if not isinstance(value, dict):
+                self._fail(path, f"{'.'.join(path)} is not a table")
+        return value
+
+    def _table(self, kind: type[T], path: tuple[str, ...], *, extra: tuple[str, ...] = ()) -> T:
+        raw = self._raw(path)
+        fields = [f.name for f in dataclasses.fields(kind)]  # pyright: ignore[reportArgumentType]
+        self._known(raw, (*extra, *fields), path)
+        values = {key: value for key, value in raw.items() if key not in extra}
+        self._finite(values, path)
+        try:
+            return msgspec.convert(values, kind, strict=True)
+        except msgspec.ValidationError as cause:
+            text, _, at = str(cause).partition(" - at ")
+            inner = tuple(re.findall(r"[A-Za-z_]\w*", at.strip("`$")))
+            where = (*path, *inner)
+            self._fail(where, f"{'.'.join(where)}: {text}")
+        except HobtwinError as cause:
+            self._fail(path, f"{'.'.join(path)}: {cause.text}", cause.remedy)
+
+    def _finite(self, values: Mapping[str, Any], path: tuple[str, ...]) -> None:
+        for key, value in values.items():
+            if isinstance(value, float) and not math.isfinite(value):
+                self._fail((*path, key), f"{key} = {value} is not a finite number")
+            if isinstance(value, dict):
+                self._finite(value, (*path, key))
+
+    def _known(self, raw: Mapping[str, Any], valid: tuple[str, ...], path: tuple[str, ...]) -> None:
+        for key in raw:
+            if key not in valid:
+                what = f"[{'.'.join(path)}]" if path else "the job"
+                self._fail((*path, key), f"unknown key {key!r} in {what}", ", ".join(valid))
+
+    def _fail(self, path: tuple[str, ...], text: str, valid: str = "") -> NoReturn:
+        place = Place(file=str(self.file), line=line_of(self.text, path))
+        raise InputError(text, place=place, remedy=f"valid: {valid}" if valid else "")

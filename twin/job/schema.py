@@ -1,0 +1,88 @@
+"""What a job.toml may say, table by table. Lengths in mm, angles in degrees."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from twin.cutters.hob import Hob
+from twin.cutters.polygon_head import PolygonHead
+from twin.inspection.nominal import Nominal
+
+Positive = Annotated[float, Meta(gt=0)]
+NotNegative = Annotated[float, Meta(ge=0)]
+Tool = Hob | PolygonHead
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MachineTable:
+    """`[machine]`"""
+
+    model: str = "hobbing_lathe"
+    """a folder of `models/`"""
+    setup: Literal["hobbing", "tilted"] = "hobbing"
+    parameters: dict[str, int | float | str] = field(default_factory=dict)
+    """controller parameters: number, #bit, .axis"""
+    signals: dict[str, bool | int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkTable:
+    """`[work]`: the blank, from Z0 (front face) to Z-length"""
+
+    diameter_mm: Positive
+    length_mm: Positive
+    bore_mm: NotNegative = 0.0
+    material: str = "16MnCr5"
+    clamping: Literal["arbor", "chuck"] = "arbor"
+    arbor_diameter_mm: Positive | None = None
+    """left out = 0.6 of the root diameter"""
+    stick_out_mm: Positive | None = None
+    """front face from the chuck's face; left out = length + 80"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reference:
+    """`[setup] reference`: part coordinates of machine zero"""
+
+    X: float = 400.0
+    """diameter at the tool tip"""
+    Z: float = 300.0
+    """tool centre from the front face"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetupTable:
+    """`[setup]`"""
+
+    reference: Reference = field(default_factory=Reference)
+    offsets: dict[str, dict[str, float]] = field(default_factory=dict)
+    """G54 … G59 -> axis -> machine coordinate of the part zero; replaces the preset"""
+    tool_offsets: dict[str, dict[str, float]] = field(default_factory=dict)
+    """T number -> axis -> offset; replaces the preset"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InspectionTable:
+    """`[inspection]`"""
+
+    datum: Literal["band"] = "band"
+    """the blank's own axis"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """A whole job: machine, blank, tools, program, and what the part should be."""
+
+    name: str
+    path: Path
+    """of job.toml"""
+    machine: MachineTable
+    work: WorkTable
+    setup: SetupTable
+    tools: dict[int, Tool]
+    """by T number; a single `[tool]` has number 0 and is mounted without a T word"""
+    program: Path
+    nominal: Nominal | None
+    inspection: InspectionTable

@@ -1,0 +1,56 @@
+"""The part as STL (binary, mm), GLB (metres, as glTF demands) and 3MF (mm)."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_TYPES = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+    '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
+)
+_RELATIONS = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n'
+    '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
+    'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+)
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+
+
+def write_meshes(folder: Path, vertices: Floats, faces: Ints) -> None:
+    """Write part.stl, part.glb and part.3mf; vertices (n, 3) in mm."""
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    mesh.export(folder / "part.stl")
+    trimesh.Trimesh(vertices / 1000.0, faces, process=False).export(folder / "part.glb")
+    _write_3mf(folder / "part.3mf", vertices, faces)
+
+
+def _write_3mf(path: Path, vertices: Floats, faces: Ints) -> None:
+    """3MF core specification 1.3: one object in millimetres; to the nanometre."""
+    points = "".join('<vertex x="%.6f" y="%.6f" z="%.6f"/>' % (x, y, z) for x, y, z in vertices.tolist())
+    triangles = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % (a, b, c) for a, b, c in faces.tolist())
+    model = (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<model unit="millimeter" xml:lang="en-US" '
+        'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
+        f'<object id="1" type="model"><mesh><vertices>{points}</vertices>'
+        f"<triangles>{triangles}</triangles></mesh></object>"
+        '</resources><build><item objectid="1"/></build></model>'
+    )
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as package:
+        for name, text in (
+            ("[Content_Types].xml", _TYPES),
+            ("_rels/.rels", _RELATIONS),
+            ("3D/3dmodel.model", model),
+        ):
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            package.writestr(entry, text)

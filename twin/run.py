@@ -1,0 +1,149 @@
+"""A job from its files to its result folder."""
+
+import json
+import math
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from controller.alarms import Alarm
+from controller.cnc import Controller
+from controller.dry_run import dry_run
+from controller.parameters import delivered
+from controller.source import load_program
+from twin.cutting.cut import cut
+from twin.cutting.stock import Blank
+from twin.inspection.deviation import deviation_map
+from twin.inspection.inspection import inspect
+from twin.inspection.sheet import to_json
+from twin.job.schema import Job
+from twin.machine import IdealMachine, MujocoMachine
+from twin.outcome import Options, Outcome
+from twin.output.folder import require_replaceable, result_folder
+from twin.output.meshes import write_meshes
+from twin.output.provenance import provenance
+from twin.progress import Reporter, Silent
+from twin.report.page import write_report
+from twin.session import CHUNK, record
+from twin.setup import make_ready
+from twin.summary import report_data
+
+BYTES_PER_SAMPLE = 160
+"""Of a recording on the disk, before compression."""
+
+
+@dataclass(slots=True)
+class Stopwatch:
+    """Wall time by stage."""
+
+    stages: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def measure(self, name: str) -> Iterator[None]:
+        """Add the time of the block to a stage."""
+        start = time.perf_counter()
+        yield
+        self.stages[name] = self.stages.get(name, 0.0) + time.perf_counter() - start
+
+
+def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = None) -> Outcome:
+    """Run, cut, inspect, report; writes the folder `out`.
+
+    Raises HobtwinError and the controller's errors for what a user can mend; nothing is written then.
+    """
+    tell = reporter or Silent()
+    require_replaceable(out)
+    watch = Stopwatch()
+    with watch.measure("set-up"):
+        ready = make_ready(job)
+        parameters = delivered(job.machine.setup, job.machine.parameters)
+        program = load_program(job.program)
+        signals = {name: bool(value) for name, value in job.machine.signals.items()}
+        cycle = dry_run(program, parameters, ready.offsets, signals).cycle_time_s
+    period = ready.spec.control_period_s
+    samples = math.ceil(cycle / period)
+    tell.stage(f"running {cycle:.0f} s of machine time (recording up to {samples * BYTES_PER_SAMPLE / 1e6:.0f} MB)")
+    with watch.measure("machine"):
+        controller = Controller(
+            program, parameters=parameters, offsets=ready.offsets, tick_s=period, signals=signals
+        )
+        machine = IdealMachine(len(controller.axes)) if options.ideal else MujocoMachine(ready.tools[0].assembly)
+        session = record(
+            controller, machine, ready, progress=lambda seconds: tell.share(seconds / max(cycle, period))
+        )
+    blank = Blank(
+        diameter_mm=job.work.diameter_mm, length_mm=job.work.length_mm, bore_mm=job.work.bore_mm
+    )
+    tell.stage("cutting")
+    with watch.measure("cutting"):
+        result = cut(
+            blank, session.motions, cell_mm=options.cell_mm, progress=lambda _stage, share: tell.share(share)
+        )
+    tell.stage("inspecting")
+    with watch.measure("inspection"):
+        inspection = inspect(result.remains.vertices, result.remains.faces, job.nominal)
+    outcome = Outcome(
+        job=job,
+        options=options,
+        ready=ready,
+        session=session,
+        cut=result,
+        inspection=inspection,
+        times=watch.stages,
+    )
+    tell.stage("writing the report")
+    with result_folder(out) as folder:
+        _write(folder, outcome, watch)
+    return outcome
+
+
+def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
+    remains, session, job = outcome.cut.remains, outcome.session, outcome.job
+    with watch.measure("files"):
+        write_meshes(folder, remains.vertices, remains.faces)
+        session.recording.save(folder / "recording.npz")
+        _json(folder / "inspection.json", to_json(outcome.inspection))
+        _json(
+            folder / "alarms.json",
+            {
+                "alarms": [_alarm(a) for a in session.alarms],
+                "warnings": [_alarm(a) for a in session.warnings],
+            },
+        )
+    origin = provenance(
+        {
+            "job": job.path,
+            "program": job.program,
+            **{path.stem: path for path in sorted(outcome.ready.spec.folder.glob("*.*ml"))},
+        },
+        {
+            "ideal": outcome.options.ideal,
+            "chunk_ticks": CHUNK,
+            "control_period_s": outcome.ready.spec.control_period_s,
+            "cell_mm": list(outcome.cut.cell_mm),
+            "method": outcome.cut.method,
+        },
+    )
+    _json(folder / "provenance.json", origin)
+    with watch.measure("report"):
+        deviation = deviation_map(remains.vertices, remains.faces, outcome.inspection)
+        write_report(folder / "report.html", report_data(outcome, deviation, origin))
+
+
+def _json(path: Path, value: object) -> None:
+    path.write_text(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _alarm(alarm: Alarm) -> dict[str, object]:
+    return {
+        "number": alarm.number,
+        "class": alarm.kind.value,
+        "text": alarm.text,
+        "file": alarm.span.file if alarm.span else None,
+        "line": alarm.span.line if alarm.span else None,
+        "column": alarm.span.column if alarm.span else None,
+        "found": alarm.found,
+        "remedy": alarm.remedy,
+    }

@@ -1,0 +1,145 @@
+"""Controller and machine on one clock, and the recording of what they did."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller.alarms import Alarm
+from controller.clock import Machine
+from controller.cnc import Controller
+from twin.cutters.cutter import Cutter
+from twin.cutting.motion import CutterMotion
+from twin.errors import PartError
+from twin.kinematics import cutter_motion, part_frame
+from twin.recording import BlockRef, Recording
+from twin.setup import MountedTool, Ready
+
+Floats = NDArray[np.float64]
+
+CHUNK = 4096
+"""[ticks] proposed at once where nobody watches"""
+SETTLE_S = 0.5
+"""[s] of a dwell that are run before the rest is passed over"""
+LONGEST_RUN_S = 6 * 3600.0
+"""[s] of recorded motion; more would not fit the memory of a small machine"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Session:
+    """What a run left behind."""
+
+    recording: Recording
+    motions: tuple[tuple[Cutter, CutterMotion], ...]
+    """one for each stretch in which one tool was in the spindle"""
+    alarms: tuple[Alarm, ...]
+    warnings: tuple[Alarm, ...]
+    skipped_s: float
+    """idle time that was passed over"""
+
+
+def record(
+    controller: Controller,
+    machine: Machine,
+    ready: Ready,
+    *,
+    progress: Callable[[float], None] = lambda _seconds: None,
+) -> Session:
+    """Run the program to its end or its first alarm. Raises PartError for a run beyond LONGEST_RUN_S."""
+    parts: list[tuple[Floats, Floats, Floats, NDArray, NDArray, NDArray]] = []
+    skipped = recorded = 0
+    settle = round(SETTLE_S / controller.tick_s)
+    while True:
+        idle = controller.idle_ticks()
+        if idle > 4 * settle and parts:
+            ticks = idle - 2 * settle
+            controller.skip(ticks)
+            machine.rest(ticks)
+            skipped += ticks
+        chunk = controller.propose(min(CHUNK, settle) if idle > 4 * settle else CHUNK)
+        if chunk.ticks == 0:
+            break
+        feedback = machine.advance(chunk)
+        n = feedback.ticks
+        time = (np.arange(chunk.first_tick + 1, chunk.first_tick + n + 1)) * controller.tick_s
+        parts.append((time, feedback.setpoint, feedback.actual, chunk.block[:n], chunk.sync[:n], chunk.tool[:n]))
+        controller.commit(feedback)
+        recorded += n
+        if recorded * controller.tick_s > LONGEST_RUN_S:
+            raise PartError(f"the program moves for more than {LONGEST_RUN_S / 3600:g} hours")
+        progress(chunk.first_tick * controller.tick_s)
+    columns = list(zip(*parts, strict=True)) if parts else _nothing(len(controller.axes))
+    time, setpoint, actual, block, sync, tool = (np.concatenate(column) for column in columns)
+    recording, motions = _recording(controller, ready, time, setpoint, actual, block, sync, tool)
+    return Session(
+        recording=recording,
+        motions=motions,
+        alarms=controller.alarms,
+        warnings=controller.warnings,
+        skipped_s=skipped * controller.tick_s,
+    )
+
+
+def _nothing(axes: int) -> list[list[NDArray]]:
+    flat = np.zeros(0)
+    rows = np.zeros((0, axes))
+    whole = np.zeros(0, dtype=np.int32)
+    return [[flat], [rows], [rows], [whole], [whole.astype(bool)], [whole.astype(np.int16)]]
+
+
+def _recording(
+    controller: Controller,
+    ready: Ready,
+    time: Floats,
+    setpoint: Floats,
+    actual: Floats,
+    block: NDArray,
+    sync: NDArray,
+    tool: NDArray,
+) -> tuple[Recording, tuple[tuple[Cutter, CutterMotion], ...]]:
+    """The recording with the tool in the part frame, and each tool's stretch of motion."""
+    n = len(time)
+    centre, axis, zero = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
+    motions: list[tuple[Cutter, CutterMotion]] = []
+    for first, last, mounted in _stretches(ready.tools, tool):
+        motion = cutter_motion(mounted.kinematics, time[first:last], actual[first:last])
+        centre[first:last], axis[first:last], zero[first:last] = part_frame(motion)
+        if last - first > 1:
+            motions.append((mounted.cutter, motion))
+    recording = Recording(
+        time_s=time,
+        axes=controller.axes,
+        setpoint=setpoint,
+        actual=actual,
+        block=block,
+        blocks=tuple(BlockRef(file=b.file, line=b.line, text=b.text) for b in controller.blocks),
+        tool=tool,
+        sync=sync,
+        work_angle_deg=actual[:, ready.work_column],
+        tool_angle_deg=actual[:, ready.tool_column],
+        tool_centre_mm=centre,
+        tool_axis=axis,
+        tool_zero=zero,
+    )
+    return recording, tuple(motions)
+
+
+def _stretches(tools: tuple[MountedTool, ...], tool: NDArray) -> list[tuple[int, int, MountedTool]]:
+    """First and one-past-last sample of each stretch with one tool; number 0 is the first tool."""
+    if not len(tool):
+        return []
+    by_number = {t.number: t for t in tools}
+    change = np.flatnonzero(np.diff(tool)) + 1
+    bounds = [0, *change.tolist(), len(tool)]
+    found = []
+    for first, last in zip(bounds, bounds[1:], strict=False):
+        number = int(tool[first])
+        mounted = by_number.get(number, tools[0] if number == 0 or len(tools) == 1 else None)
+        if mounted is None:
+            raise PartError(
+                f"the program calls T{number:02d}, which the job does not have",
+                remedy=f"valid: {', '.join(f'T{n:02d}' for n in by_number)}",
+            )
+        found.append((first, last, mounted))
+    return found

@@ -1,0 +1,124 @@
+"""A job made ready to run: the machine as mounted, the controller's offsets, each tool's cutter."""
+
+import math
+from dataclasses import dataclass
+
+from controller.offsets import Offsets
+from twin.cutters.cutter import Cutter
+from twin.cutters.hob import Hob
+from twin.errors import InputError, Place
+from twin.inspection.nominal import GearNominal
+from twin.job.schema import Job, Tool
+from twin.kinematics import Kinematics, read_kinematics
+from twin.machine import Assembly, MachineSpec, MachineZero, Setup, ToolMount, WorkMount, assemble, load_machine
+
+ARBOR = 0.6
+"""Arbor diameter over root diameter where a job names none."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MountedTool:
+    """One tool in the spindle, its carrier swivelled for it."""
+
+    number: int
+    cutter: Cutter
+    assembly: Assembly
+    kinematics: Kinematics
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ready:
+    """Everything that a run needs beside the program."""
+
+    spec: MachineSpec
+    setup: Setup
+    tools: tuple[MountedTool, ...]
+    """the first one is in the spindle when the program starts"""
+    offsets: Offsets
+    work_column: int
+    """of the work spindle among the system axes"""
+    tool_column: int
+    """of the tool spindle"""
+
+
+def make_ready(job: Job) -> Ready:
+    """Mount work and tools. Raises InputError where the job contradicts itself or the machine."""
+    spec = load_machine(job.machine.model)
+    setup = Setup(job.machine.setup)
+    zero = MachineZero(x_mm=job.setup.reference.X, z_mm=job.setup.reference.Z)
+    cutters = {number: _cutter(job, tool) for number, tool in job.tools.items()}
+    first = next(iter(cutters.values()))
+    work = WorkMount(
+        diameter_mm=job.work.diameter_mm,
+        length_mm=job.work.length_mm,
+        arbor_diameter_mm=job.work.arbor_diameter_mm or ARBOR * _root_diameter(job),
+        stick_out_mm=job.work.stick_out_mm,
+    )
+    tools = []
+    for number, cutter in cutters.items():
+        mount = ToolMount(
+            carrier_swivel_deg=math.degrees(cutter.swivel),
+            radius_mm=first.radius,
+            length_mm=_length(job, job.tools[number]),
+            edges=len(cutter.gash_angle),
+        )
+        assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
+        kinematics = read_kinematics(assembly.model, assembly.joints)
+        tools.append(MountedTool(number=number, cutter=cutter, assembly=assembly, kinematics=kinematics))
+    return Ready(
+        spec=spec,
+        setup=setup,
+        tools=tuple(tools),
+        offsets=_offsets(job, cutters),
+        work_column=tools[0].kinematics.work.spindle.column,
+        tool_column=tools[0].kinematics.tool.spindle.column,
+    )
+
+
+def _cutter(job: Job, tool: Tool) -> Cutter:
+    if not isinstance(tool, Hob):
+        return tool.cutter()
+    if tool.swivel_deg is not None:
+        return tool.cutter(math.radians(tool.swivel_deg))
+    if not isinstance(job.nominal, GearNominal):
+        raise InputError(
+            "the hob's swivel is not known: the job has no nominal gear",
+            place=Place(file=str(job.path)),
+            remedy="swivel_deg in [tool], or [nominal] kind = \"gear\"",
+        )
+    # swivel = helix angle − lead angle, both with the sign of their hand (geometry.md, section 2)
+    return tool.cutter(math.radians(job.nominal.helix_angle_deg) - tool.lead_angle)
+
+
+def _root_diameter(job: Job) -> float:
+    """Root diameter of the nominal; without one, four fifths of the blank."""
+    nominal = job.nominal
+    if isinstance(nominal, GearNominal):
+        pitch = nominal.number_of_teeth * nominal.normal_module_mm / math.cos(math.radians(nominal.helix_angle_deg))
+        root = pitch - 2.0 * nominal.normal_module_mm * (nominal.dedendum_factor - nominal.profile_shift)
+        return min(max(root, 0.2 * job.work.diameter_mm), job.work.diameter_mm)
+    if nominal is not None:
+        return min(nominal.across_flats_mm, job.work.diameter_mm)
+    return 0.8 * job.work.diameter_mm
+
+
+def _length(job: Job, tool: Tool) -> float:
+    """Length of the tool along its axis, for the machine's picture and inertia [mm]."""
+    if isinstance(tool, Hob):
+        return tool.length_mm or max(0.8 * tool.outside_diameter_mm, 1.2 * job.work.diameter_mm)
+    return 4.0 * tool.edge_width_mm + 10.0
+
+
+def _offsets(job: Job, cutters: dict[int, Cutter]) -> Offsets:
+    """Presets: X reads the diameter at the tool's tip, Z0 the front face (controller.md, section 0)."""
+    reference = job.setup.reference
+    first = next(iter(cutters.values()))
+    work = {"G54": {"X": -reference.X, "Z": -reference.Z}, **job.setup.offsets}
+    tools: dict[int, dict[str, float]] = {
+        number: {"X": 2.0 * (first.radius - cutter.radius)} for number, cutter in cutters.items() if number
+    }
+    for name, values in job.setup.tool_offsets.items():
+        if not name.isdigit():
+            raise InputError(f"tool_offsets: {name!r} is no number", place=Place(file=str(job.path)))
+        tools[int(name)] = dict(values)
+    return Offsets(work=work, tool=tools)

@@ -1,0 +1,175 @@
+"""A run in words and rows: for the terminal and for the report."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller.alarms import Alarm
+from twin.cutters.hob import Hob
+from twin.inspection.result import GearResult, Inspection, PolygonResult
+from twin.outcome import Outcome
+from twin.report.data import Message, Part, Program, ReportData, Row, Severity
+from twin.report.words import headline
+
+Floats = NDArray[np.float64]
+
+
+def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object]) -> ReportData:
+    """Everything that the report shows; `deviation_um` (n,) of the part's vertices."""
+    remains = outcome.cut.remains
+    return ReportData(
+        title=outcome.job.name,
+        job=tuple(_job_rows(outcome)),
+        provenance=tuple(_provenance_rows(origin)),
+        timing=tuple(Row(label=name, value=f"{t:.2f} s") for name, t in outcome.times.items()),
+        recording=outcome.session.recording,
+        rotary_axes=_rotary(outcome),
+        messages=messages(outcome),
+        part=Part(vertices=remains.vertices, faces=remains.faces, deviation_um=deviation_um),
+        inspection=outcome.inspection,
+        programs=(Program(name=outcome.job.program.name, text=_text(outcome)),),
+    )
+
+
+def messages(outcome: Outcome) -> tuple[Message, ...]:
+    """Alarms and warnings of the controller, then what the cut has to say."""
+    said = [(Severity.ALARM, a) for a in outcome.session.alarms]
+    said += [(Severity.WARNING, a) for a in outcome.session.warnings]
+    notes = [Message(severity=Severity.WARNING, number="CUT", text=note) for note in outcome.cut.notes]
+    return tuple(_message(severity, a) for severity, a in said) + tuple(notes)
+
+
+def lines(outcome: Outcome) -> list[str]:
+    """What the terminal says when a run has ended."""
+    said = [str(a) for a in (*outcome.session.alarms, *outcome.session.warnings)]
+    said += [f"note: {note}" for note in outcome.cut.notes]
+    return said + part_lines(outcome.inspection, messages(outcome))
+
+
+def part_lines(inspection: Inspection, said_before: tuple[Message, ...] = ()) -> list[str]:
+    """Key figures and verdict of a part."""
+    said: list[str] = []
+    if inspection.gear:
+        said += _gear_lines(inspection.gear)
+    elif inspection.polygon:
+        said += _polygon_lines(inspection.polygon)
+    nothing = np.zeros((0, 3))
+    part = Part(vertices=nothing, faces=nothing.astype(int), deviation_um=nothing[:, 0])
+    head = headline(ReportData(title="", messages=said_before, inspection=inspection, part=part))
+    said.append(f"{head.label}: {head.sentence}")
+    said += [f"  - {finding}" for finding in head.findings]
+    return said
+
+
+def _gear_lines(gear: GearResult) -> list[str]:
+    def row(name: str, left: float | None, right: float | None) -> str:
+        shown = ["  —   " if v is None else f"{v:6.2f}" for v in (left, right)]
+        return f"  {name:<24} left {shown[0]} µm   right {shown[1]} µm"
+
+    a, b = gear.left, gear.right
+    size = f"  tip {gear.tip_diameter_mm:.3f} mm, root {gear.root_diameter_mm:.3f} mm"
+    if gear.span_mm is not None:
+        size += f", span over {gear.span_teeth} teeth {gear.span_mm:.4f} mm"
+    return [
+        f"  {gear.number_of_teeth} teeth, module {gear.normal_module_mm:.4f} mm, "
+        f"helix {gear.helix_angle_deg:+.4f}° ({gear.hand})",
+        size,
+        row("profile slope f_Hα", a.profile_slope_um, b.profile_slope_um),
+        row("profile form f_fα", a.profile_form_um, b.profile_form_um),
+        row("helix slope f_Hβ", a.helix_slope_um, b.helix_slope_um),
+        row("helix form f_fβ", a.helix_form_um, b.helix_form_um),
+        row("single pitch f_p", a.single_pitch_um, b.single_pitch_um),
+        row("cumulative pitch F_p", a.cumulative_pitch_um, b.cumulative_pitch_um),
+    ]
+
+
+def _polygon_lines(polygon: PolygonResult) -> list[str]:
+    def mm(value: float | None) -> str:
+        return "—" if value is None else f"{value:.4f} mm"
+
+    return [
+        f"  {polygon.number_of_sides} sides, across flats {mm(polygon.across_flats_mm)}, "
+        f"by caliper {mm(polygon.across_flats_caliper_mm)}, across corners {mm(polygon.across_corners_mm)}",
+        f"  bow {polygon.bow_um:+.2f} µm ({'convex' if polygon.bow_um >= 0 else 'concave'}), "
+        f"flatness {polygon.flatness_um:.2f} µm, twist {polygon.twist_deg_per_mm:+.4f} °/mm",
+    ]
+
+
+def _message(severity: Severity, alarm: Alarm) -> Message:
+    span = alarm.span
+    return Message(
+        severity=severity,
+        number=alarm.number,
+        text=alarm.text,
+        file=span.file if span else "",
+        line=span.line if span else None,
+        column=span.column if span else None,
+        found=alarm.found,
+        remedy=alarm.remedy,
+    )
+
+
+def _job_rows(outcome: Outcome) -> list[Row]:
+    job, result = outcome.job, outcome.cut
+    machine = f"{job.machine.model}, set-up {job.machine.setup}"
+    rows = [Row(label="Machine", value=machine + (", ideal axes" if outcome.options.ideal else ", servo drives"))]
+    blank = f"Ø {job.work.diameter_mm:g} × {job.work.length_mm:g} mm"
+    if job.work.bore_mm:
+        blank += f", bore {job.work.bore_mm:g} mm"
+    rows.append(Row(label="Blank", value=f"{blank}, {job.work.material}"))
+    for number, tool in job.tools.items():
+        if isinstance(tool, Hob):
+            text = (
+                f"{tool.hand}-hand hob m {tool.normal_module_mm:g} mm, Ø {tool.outside_diameter_mm:g} mm, "
+                f"{tool.starts} start(s), {tool.gashes} gashes"
+            )
+        else:
+            text = f"polygon head, {tool.inserts} insert(s) on radius {tool.tip_radius_mm:g} mm"
+        rows.append(Row(label=f"Tool T{number:02d}" if number else "Tool", value=text))
+    rows.append(Row(label="Program", value=job.program.name))
+    rows.append(
+        Row(
+            label="Cut",
+            value=f"{result.passes} passes near the stock; {result.method}; cell "
+            + " × ".join(f"{c:.3f}" for c in result.cell_mm)
+            + " mm",
+        )
+    )
+    if result.checked:
+        rows.append(
+            Row(
+                label="Check",
+                value=f"{result.checked} points of the cut surface against all passes: "
+                f"largest error {result.largest_error_um:.2g} µm",
+            )
+        )
+    remains = result.remains
+    rows.append(
+        Row(
+            label="Volume",
+            value=f"blank {remains.blank_volume_mm3:.1f} mm³, part {remains.volume_mm3:.1f} mm³",
+        )
+    )
+    return rows
+
+
+def _provenance_rows(origin: dict[str, object]) -> list[Row]:
+    rows: list[Row] = []
+    for section, values in origin.items():
+        if isinstance(values, dict):
+            for name, value in values.items():
+                shown = f"{value['file']}  {value['sha256']}" if section == "inputs" else str(value)
+                rows.append(Row(label=f"{section}: {name}", value=shown))
+    return rows
+
+
+def _rotary(outcome: Outcome) -> frozenset[str]:
+    letters = outcome.session.recording.axes
+    return frozenset(letters[k] for k in (outcome.ready.work_column, outcome.ready.tool_column))
+
+
+def _text(outcome: Outcome) -> str:
+    data = outcome.job.program.read_bytes()
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("gbk", errors="replace")
