@@ -52,7 +52,12 @@ def machine_ticks(scene: str = "hexagon_af17") -> None:
         start = time.perf_counter()
         ticks = len(record(controller, machine, ready).recording.time_s)
         seconds = time.perf_counter() - start
-        say(case=f"run {name}", scene=scene, ticks_per_s=ticks / seconds, times_real_time=ticks / 1000 / seconds)
+        say(
+            case=f"run {name}",
+            scene=scene,
+            ticks_per_s=ticks / seconds,
+            times_real_time=ticks / 1000 / seconds,
+        )
 
 
 def kernel(scene: str) -> None:

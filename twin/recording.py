@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +57,7 @@ class Recording:
 
     def save(self, path: Path) -> None:
         """Write `recording.npz`: per axis letter `setpoint_X`, `actual_X`, …; the rest under its own name."""
-        columns: dict[str, NDArray] = {}
+        columns: dict[str, Any] = {}
         for k, letter in enumerate(self.axes):
             columns[f"setpoint_{letter}"] = self.setpoint[:, k]
             columns[f"actual_{letter}"] = self.actual[:, k]

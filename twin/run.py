@@ -64,18 +64,20 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         cycle = dry_run(program, parameters, ready.offsets, signals).cycle_time_s
     period = ready.spec.control_period_s
     samples = math.ceil(cycle / period)
-    tell.stage(f"running {cycle:.0f} s of machine time (recording up to {samples * BYTES_PER_SAMPLE / 1e6:.0f} MB)")
+    tell.stage(
+        f"running {cycle:.0f} s of machine time (recording up to {samples * BYTES_PER_SAMPLE / 1e6:.0f} MB)"
+    )
     with watch.measure("machine"):
         controller = Controller(
             program, parameters=parameters, offsets=ready.offsets, tick_s=period, signals=signals
         )
-        machine = IdealMachine(len(controller.axes)) if options.ideal else MujocoMachine(ready.tools[0].assembly)
+        machine = (
+            IdealMachine(len(controller.axes)) if options.ideal else MujocoMachine(ready.tools[0].assembly)
+        )
         session = record(
             controller, machine, ready, progress=lambda seconds: tell.share(seconds / max(cycle, period))
         )
-    blank = Blank(
-        diameter_mm=job.work.diameter_mm, length_mm=job.work.length_mm, bore_mm=job.work.bore_mm
-    )
+    blank = Blank(diameter_mm=job.work.diameter_mm, length_mm=job.work.length_mm, bore_mm=job.work.bore_mm)
     tell.stage("cutting")
     with watch.measure("cutting"):
         result = cut(

@@ -1,13 +1,14 @@
 """Controller and machine on one clock, and the recording of what they did."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from controller.alarms import Alarm
-from controller.clock import Machine
+from controller.clock import Chunk, Feedback, Machine
 from controller.cnc import Controller
 from twin.cutters.cutter import Cutter
 from twin.cutting.motion import CutterMotion
@@ -39,6 +40,46 @@ class Session:
     """idle time that was passed over"""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Tape:
+    """What one chunk, or all of them, left: the columns of a recording, row by row."""
+
+    time: Floats
+    setpoint: Floats
+    actual: Floats
+    block: NDArray[np.int32]
+    sync: NDArray[np.bool_]
+    tool: NDArray[np.int16]
+
+    @staticmethod
+    def of(chunk: Chunk, feedback: Feedback, tick_s: float) -> "_Tape":
+        """The rows of one chunk that the machine has really made."""
+        n = feedback.ticks
+        return _Tape(
+            time=np.arange(chunk.first_tick + 1, chunk.first_tick + n + 1, dtype=np.float64) * tick_s,
+            setpoint=feedback.setpoint,
+            actual=feedback.actual,
+            block=chunk.block[:n],
+            sync=chunk.sync[:n],
+            tool=chunk.tool[:n],
+        )
+
+    @staticmethod
+    def joined(tapes: list["_Tape"], axes: int) -> "_Tape":
+        """All rows, one after the other."""
+        empty = np.zeros((0, axes))
+        none = _Tape(
+            time=empty[:, 0],
+            setpoint=empty,
+            actual=empty,
+            block=np.zeros(0, dtype=np.int32),
+            sync=np.zeros(0, dtype=bool),
+            tool=np.zeros(0, dtype=np.int16),
+        )
+        names = [f.name for f in fields(_Tape)]
+        return _Tape(**{name: np.concatenate([getattr(t, name) for t in (none, *tapes)]) for name in names})
+
+
 def record(
     controller: Controller,
     machine: Machine,
@@ -47,12 +88,12 @@ def record(
     progress: Callable[[float], None] = lambda _seconds: None,
 ) -> Session:
     """Run the program to its end or its first alarm. Raises PartError for a run beyond LONGEST_RUN_S."""
-    parts: list[tuple[Floats, Floats, Floats, NDArray, NDArray, NDArray]] = []
+    tapes: list[_Tape] = []
     skipped = recorded = 0
     settle = round(SETTLE_S / controller.tick_s)
     while True:
         idle = controller.idle_ticks()
-        if idle > 4 * settle and parts:
+        if idle > 4 * settle and tapes:
             ticks = idle - 2 * settle
             controller.skip(ticks)
             machine.rest(ticks)
@@ -61,17 +102,16 @@ def record(
         if chunk.ticks == 0:
             break
         feedback = machine.advance(chunk)
-        n = feedback.ticks
-        time = (np.arange(chunk.first_tick + 1, chunk.first_tick + n + 1)) * controller.tick_s
-        parts.append((time, feedback.setpoint, feedback.actual, chunk.block[:n], chunk.sync[:n], chunk.tool[:n]))
+        tapes.append(_Tape.of(chunk, feedback, controller.tick_s))
         controller.commit(feedback)
-        recorded += n
+        recorded += feedback.ticks
         if recorded * controller.tick_s > LONGEST_RUN_S:
-            raise PartError(f"the program moves for more than {LONGEST_RUN_S / 3600:g} hours")
+            raise PartError(
+                f"the program moves for more than {LONGEST_RUN_S / 3600:g} hours",
+                remedy="check the feed; run a part of the program",
+            )
         progress(chunk.first_tick * controller.tick_s)
-    columns = list(zip(*parts, strict=True)) if parts else _nothing(len(controller.axes))
-    time, setpoint, actual, block, sync, tool = (np.concatenate(column) for column in columns)
-    recording, motions = _recording(controller, ready, time, setpoint, actual, block, sync, tool)
+    recording, motions = _recording(controller, ready, _Tape.joined(tapes, len(controller.axes)))
     return Session(
         recording=recording,
         motions=motions,
@@ -81,43 +121,29 @@ def record(
     )
 
 
-def _nothing(axes: int) -> list[list[NDArray]]:
-    flat = np.zeros(0)
-    rows = np.zeros((0, axes))
-    whole = np.zeros(0, dtype=np.int32)
-    return [[flat], [rows], [rows], [whole], [whole.astype(bool)], [whole.astype(np.int16)]]
-
-
 def _recording(
-    controller: Controller,
-    ready: Ready,
-    time: Floats,
-    setpoint: Floats,
-    actual: Floats,
-    block: NDArray,
-    sync: NDArray,
-    tool: NDArray,
+    controller: Controller, ready: Ready, tape: _Tape
 ) -> tuple[Recording, tuple[tuple[Cutter, CutterMotion], ...]]:
     """The recording with the tool in the part frame, and each tool's stretch of motion."""
-    n = len(time)
+    n = len(tape.time)
     centre, axis, zero = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     motions: list[tuple[Cutter, CutterMotion]] = []
-    for first, last, mounted in _stretches(ready.tools, tool):
-        motion = cutter_motion(mounted.kinematics, time[first:last], actual[first:last])
+    for first, last, mounted in _stretches(ready.tools, tape.tool):
+        motion = cutter_motion(mounted.kinematics, tape.time[first:last], tape.actual[first:last])
         centre[first:last], axis[first:last], zero[first:last] = part_frame(motion)
         if last - first > 1:
             motions.append((mounted.cutter, motion))
     recording = Recording(
-        time_s=time,
+        time_s=tape.time,
         axes=controller.axes,
-        setpoint=setpoint,
-        actual=actual,
-        block=block,
+        setpoint=tape.setpoint,
+        actual=tape.actual,
+        block=tape.block,
         blocks=tuple(BlockRef(file=b.file, line=b.line, text=b.text) for b in controller.blocks),
-        tool=tool,
-        sync=sync,
-        work_angle_deg=actual[:, ready.work_column],
-        tool_angle_deg=actual[:, ready.tool_column],
+        tool=tape.tool,
+        sync=tape.sync,
+        work_angle_deg=tape.actual[:, ready.work_column],
+        tool_angle_deg=tape.actual[:, ready.tool_column],
         tool_centre_mm=centre,
         tool_axis=axis,
         tool_zero=zero,
@@ -133,7 +159,7 @@ def _stretches(tools: tuple[MountedTool, ...], tool: NDArray) -> list[tuple[int,
     change = np.flatnonzero(np.diff(tool)) + 1
     bounds = [0, *change.tolist(), len(tool)]
     found = []
-    for first, last in zip(bounds, bounds[1:], strict=False):
+    for first, last in pairwise(bounds):
         number = int(tool[first])
         mounted = by_number.get(number, tools[0] if number == 0 or len(tools) == 1 else None)
         if mounted is None:

@@ -10,7 +10,16 @@ from twin.errors import InputError, Place
 from twin.inspection.nominal import GearNominal
 from twin.job.schema import Job, Tool
 from twin.kinematics import Kinematics, read_kinematics
-from twin.machine import Assembly, MachineSpec, MachineZero, Setup, ToolMount, WorkMount, assemble, load_machine
+from twin.machine import (
+    Assembly,
+    MachineSpec,
+    MachineZero,
+    Setup,
+    ToolMount,
+    WorkMount,
+    assemble,
+    load_machine,
+)
 
 ARBOR = 0.6
 """Arbor diameter over root diameter where a job names none."""
@@ -84,7 +93,7 @@ def _cutter(job: Job, tool: Tool) -> Cutter:
         raise InputError(
             "the hob's swivel is not known: the job has no nominal gear",
             place=Place(file=str(job.path)),
-            remedy="swivel_deg in [tool], or [nominal] kind = \"gear\"",
+            remedy='swivel_deg in [tool], or [nominal] kind = "gear"',
         )
     # swivel = helix angle − lead angle, both with the sign of their hand (geometry.md, section 2)
     return tool.cutter(math.radians(job.nominal.helix_angle_deg) - tool.lead_angle)
@@ -94,7 +103,11 @@ def _root_diameter(job: Job) -> float:
     """Root diameter of the nominal; without one, four fifths of the blank."""
     nominal = job.nominal
     if isinstance(nominal, GearNominal):
-        pitch = nominal.number_of_teeth * nominal.normal_module_mm / math.cos(math.radians(nominal.helix_angle_deg))
+        pitch = (
+            nominal.number_of_teeth
+            * nominal.normal_module_mm
+            / math.cos(math.radians(nominal.helix_angle_deg))
+        )
         root = pitch - 2.0 * nominal.normal_module_mm * (nominal.dedendum_factor - nominal.profile_shift)
         return min(max(root, 0.2 * job.work.diameter_mm), job.work.diameter_mm)
     if nominal is not None:

@@ -111,7 +111,9 @@ def _message(severity: Severity, alarm: Alarm) -> Message:
 def _job_rows(outcome: Outcome) -> list[Row]:
     job, result = outcome.job, outcome.cut
     machine = f"{job.machine.model}, set-up {job.machine.setup}"
-    rows = [Row(label="Machine", value=machine + (", ideal axes" if outcome.options.ideal else ", servo drives"))]
+    rows = [
+        Row(label="Machine", value=machine + (", ideal axes" if outcome.options.ideal else ", servo drives"))
+    ]
     blank = f"Ø {job.work.diameter_mm:g} × {job.work.length_mm:g} mm"
     if job.work.bore_mm:
         blank += f", bore {job.work.bore_mm:g} mm"

@@ -82,7 +82,7 @@ def test_a_polygon_scene_cuts_the_faces_of_its_ratio(tmp_path, scene, sides, fla
     found_code, found, _ = run(tmp_path, scene, "--ideal", "--cell-mm", "0.15")
     assert found_code == code
     assert found["number_of_sides"] == sides
-    assert found["across_flats_mid_face_mm"] == pytest.approx(flats, abs=0.001)
+    assert found["across_flats_mm"] == pytest.approx(flats, abs=0.001)
     assert found["bow_um"] == pytest.approx(bow, rel=0.05)
     assert found["across_corners_mm"] == pytest.approx(corners, abs=0.005)
     caliper = flats + 2e-3 * max(-bow, 0.0)
@@ -132,7 +132,7 @@ def test_servo_drives_and_ideal_axes_cut_the_same_hexagon(tmp_path):
     """Settled drives with full feed-forward lag by nothing: less than 2 µm across flats remain."""
     code, found, out = run(tmp_path, "hexagon_af17", "--cell-mm", "0.2")
     assert code == 0
-    assert found["across_flats_mid_face_mm"] == pytest.approx(17.0, abs=0.002)
+    assert found["across_flats_mm"] == pytest.approx(17.0, abs=0.002)
     assert found["bow_um"] == pytest.approx(13.04, rel=0.05)
     with np.load(out / "recording.npz") as recording:
         assert np.allclose(np.diff(recording["time_s"]), 1e-3)

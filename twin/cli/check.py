@@ -16,7 +16,8 @@ def check_command(options: argparse.Namespace) -> ExitCode:
     """Check a program or a job's program. Raises HobtwinError and ControllerError."""
     target: Path = options.target
     overrides = dict(_pair(text, "--parameter 201#4=1") for text in options.parameter)
-    signals = {name: value != "0" for name, value in (_pair(t, "--signal NOZAGC=1") for t in options.signal)}
+    asked = dict(_pair(text, "--signal NOZAGC=1") for text in options.signal)
+    signals = {name: value != "0" for name, value in asked.items()}
     if target.is_dir() or target.suffix == ".toml":
         from twin.job import read_job  # noqa: PLC0415 - a bare program needs none of this
         from twin.setup import make_ready  # noqa: PLC0415
@@ -54,7 +55,8 @@ def _print(found: DryRun, form: str) -> None:
         return
     for name, values in (("absolute", found.absolute), ("machine", found.machine)):
         print(f"{name:<9}" + "".join(f"  {letter}{value:.3f}" for letter, value in values.items()))
-    print(f"cycle time {found.cycle_time_s:.1f} s; {len(found.alarms)} alarm(s), {len(found.warnings)} warning(s)")
+    said = f"{len(found.alarms)} alarm(s), {len(found.warnings)} warning(s)"
+    print(f"cycle time {found.cycle_time_s:.1f} s; {said}")
 
 
 def _github(alarm: Alarm) -> str:

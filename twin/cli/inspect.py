@@ -39,9 +39,11 @@ def read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
         raise InputError("there is no such file", place=place)
     try:
         mesh = trimesh.load_mesh(path, process=False)
-    except Exception as cause:  # noqa: BLE001 - readers raise whatever they please on damaged files
+    except Exception as cause:  # readers raise whatever they please on damaged files
         raise InputError(
-            f"not a readable mesh ({type(cause).__name__}: {cause})", place=place, remedy="valid: STL, PLY, OBJ, GLB"
+            f"not a readable mesh ({type(cause).__name__}: {cause})",
+            place=place,
+            remedy="valid: STL, PLY, OBJ, GLB",
         ) from cause
     if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
         raise InputError("the file holds no triangles", place=place, remedy="valid: STL, PLY, OBJ, GLB")

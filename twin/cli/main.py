@@ -11,34 +11,39 @@ from twin.errors import ExitCode, HobtwinError
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command. Returns the exit code of the contract: 0 fine, 1 finding, 2 usage, 3 our fault."""
     options = _parser().parse_args(arguments)
-    from controller.alarms import AlarmError, ControllerError  # noqa: PLC0415
-
     try:
         return int(options.command(options))
-    except HobtwinError as error:
-        print(error, file=sys.stderr)
-        return int(error.exit_code)
-    except AlarmError as error:
-        print(error, file=sys.stderr)
-        return int(ExitCode.USAGE if error.alarm.number in UNREADABLE else ExitCode.FINDING)
-    except ControllerError as error:
-        print(error, file=sys.stderr)
-        return int(ExitCode.USAGE)
     except KeyboardInterrupt:
         print("interrupted; nothing was written", file=sys.stderr)
-        return 130
+        return INTERRUPTED
     except BrokenPipeError:
         return int(ExitCode.FINE)
-    except Exception as error:  # noqa: BLE001 - the last resort: a fault of ours is said, not thrown
+    except Exception as error:
         if options.debug:
             raise
-        print(
-            f"hobtwin: internal fault: {type(error).__name__}: {error} (run again with --debug for the trace)",
-            file=sys.stderr,
-        )
-        return int(ExitCode.FAULT)
+        print(_said(error), file=sys.stderr)
+        return int(_code(error))
 
 
+def _code(error: Exception) -> ExitCode:
+    from controller.alarms import AlarmError, ControllerError  # noqa: PLC0415
+
+    if isinstance(error, HobtwinError):
+        return error.exit_code
+    if isinstance(error, AlarmError) and error.alarm.number not in UNREADABLE:
+        return ExitCode.FINDING
+    return ExitCode.USAGE if isinstance(error, ControllerError) else ExitCode.FAULT
+
+
+def _said(error: Exception) -> str:
+    if _code(error) is not ExitCode.FAULT:
+        return str(error)
+    what = f"{type(error).__name__}: {error}"
+    return f"hobtwin: internal fault: {what} (run again with --debug for the trace)"
+
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells expect it."""
 UNREADABLE = frozenset({"HT9000", "HT9001"})
 """Alarms that mean unreadable input rather than a finding in a program."""
 

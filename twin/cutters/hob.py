@@ -103,8 +103,7 @@ class Hob:
         gash = np.arange(self.gashes)
         return Cutter(
             gash_angle=2.0 * math.pi * gash / self.gashes,
-            gash_shift=self.shift_mm
-            + self.sign * self.starts * self.axial_pitch * gash / self.gashes,
+            gash_shift=self.shift_mm + self.sign * self.starts * self.axial_pitch * gash / self.gashes,
             profile=self.profile(),
             half_length=math.inf if self.length_mm is None else self.length_mm / 2.0,
             shift=self.shift_mm,

@@ -94,7 +94,9 @@ def find_crossings(sweep: Sweep, grid: Grid, leaves: Leaves, depth: Floats) -> C
         inside = node[:, axis] < grid.node_shape[axis] - 1 if axis != 1 else np.ones(len(node), dtype=bool)
         there = np.where(inside, flat[grid.node_id(*np.where(inside[:, None], node + step, node).T)], here)
         crossed = np.flatnonzero((here > 0) != (there > 0))
-        rows.append((edge_key(grid, axis, node[crossed]), crossed, np.full(len(crossed), axis), there[crossed]))
+        rows.append(
+            (edge_key(grid, axis, node[crossed]), crossed, np.full(len(crossed), axis), there[crossed])
+        )
     key, owner, axis, there = (np.concatenate(column) for column in zip(*rows, strict=True))
     order = np.argsort(key)
     key, owner, axis, there = key[order], owner[order], axis[order], there[order]
@@ -106,7 +108,7 @@ def find_crossings(sweep: Sweep, grid: Grid, leaves: Leaves, depth: Floats) -> C
     point, normal = edge.at(np.arange(len(key)), t)
     normal *= np.where(rising, 1.0, -1.0)[:, None]
     cut = np.flatnonzero(~closing)
-    point[cut], normal[cut] = _solve(sweep, edge, cut, here[owner[cut]], there[cut], lists.of(cut))
+    point[cut], normal[cut] = _solve(sweep, edge, cut, (here[owner[cut]], there[cut]), lists.of(cut))
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     return Crossings(key, point, normal, rising)
 
@@ -144,13 +146,16 @@ class _Edges:
         r, angle, z = (self.low[rows] + t[:, None] * self.step[rows]).T
         dr, da, dz = self.step[rows].T
         cos, sin = np.cos(angle), np.sin(angle)
-        return cartesian(r, angle, z), np.stack([dr * cos - r * sin * da, dr * sin + r * cos * da, dz], axis=1)
+        return cartesian(r, angle, z), np.stack(
+            [dr * cos - r * sin * da, dr * sin + r * cos * da, dz], axis=1
+        )
 
 
 def _solve(
-    sweep: Sweep, edge: _Edges, rows: Ints, here: Floats, there: Floats, lists: Candidates
+    sweep: Sweep, edge: _Edges, rows: Ints, ends: tuple[Floats, Floats], lists: Candidates
 ) -> tuple[Floats, Floats]:
     """Points and normals of some edges, by Newton's method kept between a removed and a kept point."""
+    here, there = ends
     n = len(here)
     rising = here > 0
     # what is known only by its sign makes no secant

@@ -22,7 +22,7 @@ from twin.errors import PartError
 Floats = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-CELLS = 250_000
+CELLS = 150_000
 """Surface cells aimed at where no cell size is asked for."""
 CHECKED = 250
 """Vertices that every run holds against all passes, unculled."""
@@ -61,6 +61,8 @@ def cut(
     teeth and the size of the blank. Raises PartError where nothing is left or the motion is not modelled.
     """
     progress("passes", 0.0)
+    if not tools:
+        return _uncut(blank, ("the tool never moved: nothing was cut",))
     cell = _cell(blank, tools) if cell_mm is None else cell_mm
     lowest = max(0.02 * blank.radius, 0.5 * blank.bore_mm, min(_closest(c, m) for c, m in tools))
     low = max(lowest - 2.5 * cell, 0.01 * blank.radius)
@@ -76,11 +78,7 @@ def cut(
     sweep = Sweep(tuple(DepthField(c, m, grid.hull_radius, grid.z_range) for c, m in tools))
     notes = [*_rubbing(blank, tools)]
     if sweep.count == 0:
-        notes.append("the tool never came near the blank: nothing was cut")
-        return CutResult(
-            remains=subtract(blank, None), method="none", cell_mm=(0.0, 0.0, 0.0), passes=0, pairs=0,
-            checked=0, largest_error_um=0.0, notes=tuple(notes),
-        )  # fmt: skip
+        return _uncut(blank, (*notes, "no edge ever swung past the blank: nothing was cut"))
     progress("searching the cut surface", 0.1)
     leaves = refine(sweep, grid)
     progress("crossings", 0.5)
@@ -127,6 +125,20 @@ def _rubbing(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> li
         for way in ways
         if way > 0
     ]
+
+
+def _uncut(blank: Blank, notes: tuple[str, ...]) -> CutResult:
+    """The blank as it was."""
+    return CutResult(
+        remains=subtract(blank, None),
+        method="none",
+        cell_mm=(0.0, 0.0, 0.0),
+        passes=0,
+        pairs=0,
+        checked=0,
+        largest_error_um=0.0,
+        notes=notes,
+    )
 
 
 def _cell(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> float:

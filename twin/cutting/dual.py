@@ -60,7 +60,9 @@ def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings) -> Sur
     return Surface(vertices, _triangles(vertices, normals, quads))
 
 
-def _fit(grid: Grid, cells: Cells, crossings: Crossings, first: Ints) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+def _fit(
+    grid: Grid, cells: Cells, crossings: Crossings, first: Ints
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
     """Vertices (n, 3) where the tangent planes of each sheet's crossings meet best, normals, sharpness."""
     rows, owners = [], []
     for number, (axis, low, _) in enumerate(EDGES):
@@ -73,7 +75,7 @@ def _fit(grid: Grid, cells: Cells, crossings: Crossings, first: Ints) -> tuple[F
     p, q = crossings.point[row], crossings.normal[row]
 
     def total(values: Floats) -> Floats:
-        return np.bincount(owner, values, minlength=n)
+        return np.asarray(np.bincount(owner, values, minlength=n), dtype=np.float64)
 
     count = total(np.ones(len(row)))
     middle = np.stack([total(p[:, x]) for x in range(3)], axis=1) / count[:, None]
@@ -112,7 +114,9 @@ def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.b
     own = ((off >= -MARGIN) & (off <= 1 + MARGIN)).all(axis=1)
     step = np.floor(off).astype(np.int64)
     there = low + step
-    near = (np.abs(step) <= 1).all(axis=1) & ((there >= 0) & (there < [nr, 2 * nt, nz]))[:, [0, 2]].all(axis=1)
+    near = (np.abs(step) <= 1).all(axis=1) & ((there >= 0) & (there < [nr, 2 * nt, nz]))[:, [0, 2]].all(
+        axis=1
+    )
     ids = np.sort(grid.node_id(*occupied.T))
     mine = grid.node_id(np.clip(there[:, 0], 0, nr), there[:, 1], np.clip(there[:, 2], 0, nz))
     at = np.minimum(np.searchsorted(ids, mine), len(ids) - 1)

@@ -105,7 +105,8 @@ def scraped(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float
             continue
         if np.ptp(motion.tool_angle[stretch]) > TURNED:
             raise PartError(
-                "the stock moves past the cutting edges faster than the tool turns; such a cut is not modelled",
+                "the stock moves past the cutting edges faster than the tool turns; "
+                "such a cut is not modelled",
                 remedy="check S, the ratio T:L or P:Q, and the feed",
             )
         worst = max(worst, way)

@@ -87,32 +87,14 @@ class DepthField:
         at = [np.interp(self.passes.at, samples, row) for row in rows]
         self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
         gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < math.pi
-        self._partial = gap.any(axis=1)
+        self._partial: NDArray[np.bool_] = np.asarray(gap.any(axis=1))
 
     def evaluate(self, points: Floats, index: Ints, *, gradient: bool = False) -> Meeting:
         """Field of pass `index[i]` at `points[i]` (m, 3) in the part frame [mm]."""
-        p = self.passes
-        local = (points @ self._mount.rotation.T + self._mount.translation).T
-        first, last, angle = p.first[index], p.last[index], p.angle[index]
-        at = p.at[index]
-        state = self._state(local, at, angle)
-        for _ in range(ROUNDS):
-            at = np.clip(at - state.lag / state.lag_rate, first, last)
-            state = self._state(local, at, angle)
-            if np.abs(state.lag).max(initial=0.0) < SETTLED:
-                break
-            restless = self._unsettled(state, at, first, last)
-            if not restless.any():
-                break
-        else:
-            rows = np.flatnonzero(restless)
-            at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
-            state = self._state(local, at, angle)
-        end = np.clip(at - state.lag / state.lag_rate, first, last)
-        step = end - at
+        state, end, step = self._meet(points, index)
         s = state.s + state.s_rate * step
         rho = state.rho + state.rho_rate * step
-        outline = s - p.shift[index]
+        outline = s - self.passes.shift[index]
         depth, by_s, by_rho = self.cutter.profile.depth(outline, rho)
         if math.isfinite(self.cutter.half_length):
             off = s - self.cutter.shift
@@ -126,7 +108,7 @@ class DepthField:
         partial = np.flatnonzero(self._partial[index])
         if len(partial):
             # where the tool stops turning, its sweep ends at the rake plane itself
-            to_rake, rate, met = self._to_rake(state, step, p.run_angle[index], partial)
+            to_rake, rate, met = self._to_rake(state, step, self.passes.run_angle[index], partial)
             ends = rho[partial] * to_rake < depth[partial]
             depth[partial] = np.where(ends, rho[partial] * to_rake, depth[partial])
             by_s[partial[ends]] = 0.0
@@ -180,16 +162,37 @@ class DepthField:
         a, b, _ = self._basis @ np.stack([x, y, z])
         return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel)
 
+    def _meet(self, points: Floats, index: Ints) -> tuple[_State, Floats, Floats]:
+        """The points near their meeting instants, those instants, and the step that is left to them."""
+        p = self.passes
+        local = (points @ self._mount.rotation.T + self._mount.translation).T
+        first, last, angle = p.first[index], p.last[index], p.angle[index]
+        at = p.at[index]
+        state = self._state(local, at, angle)
+        for _ in range(ROUNDS):
+            at = np.clip(at - state.lag / state.lag_rate, first, last)
+            state = self._state(local, at, angle)
+            if np.abs(state.lag).max(initial=0.0) < SETTLED or not len(
+                self._unsettled(state, at, first, last)
+            ):
+                break
+        else:
+            rows = self._unsettled(state, at, first, last)
+            at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
+            state = self._state(local, at, angle)
+        end = np.clip(at - state.lag / state.lag_rate, first, last)
+        return state, end, end - at
+
     @staticmethod
-    def _unsettled(state: _State, at: Floats, first: Floats, last: Floats) -> NDArray[np.bool_]:
-        """Points that can still come closer to their meeting instant."""
+    def _unsettled(state: _State, at: Floats, first: Floats, last: Floats) -> Ints:
+        """Rows of the points that can still come closer to their meeting instant."""
         free = np.abs(state.lag) >= SETTLED
         wanted = at - state.lag / state.lag_rate
         held = ((at == first) & (wanted < first)) | ((at == last) & (wanted > last))
-        return free & ~held
+        return np.flatnonzero(free & ~held)
 
     def _bisect(self, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
-        """Meeting instants where Newton's steps go round in circles: the speed changes too much on the way."""
+        """Meeting instants by halving, where Newton's steps go round in circles: S changes too much."""
         low, high = first.copy(), last.copy()
         falling = self._state(local, low, angle).lag > self._state(local, high, angle).lag
         for _ in range(HALVINGS):
@@ -203,7 +206,7 @@ class DepthField:
     def _to_rake(
         state: _State, step: Floats, run: Floats, rows: Ints
     ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-        """Angle (k,) from the end of the sweep, its rate across the rake plane, and whether the point meets it.
+        """Angle (k,) from the end of the sweep, its rate across the rake plane, and whether they meet.
 
         Negative for a point that the edge never comes to.
         """

@@ -57,7 +57,7 @@ class Grid:
 
     def angle(self, j: Ints | Floats) -> Floats:
         """Angle of node index `j` [rad]."""
-        return np.asarray(j) * (2 * math.pi / self.sectors)
+        return np.asarray(j, dtype=np.float64) * (2 * math.pi / self.sectors)
 
     def points(self, i: Ints, j: Ints, k: Ints) -> Floats:
         """(n, 3) positions of nodes [mm]."""
@@ -106,7 +106,7 @@ def grid_around(
     dz = (z_high - z_low) / nz
     sectors = BLOCK * max(FEWEST, round(2 * math.pi * r_high / cell[1] / BLOCK))
     return Grid(
-        r=r_low + dr * np.arange(nr + 3),
+        r=r_low + dr * np.arange(nr + 3, dtype=np.float64),
         sectors=sectors,
-        z=z_low + dz * np.arange(-2, nz + 3),
+        z=z_low + dz * np.arange(-2, nz + 3, dtype=np.float64),
     )

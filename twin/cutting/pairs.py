@@ -54,9 +54,7 @@ def join(parts: list[Candidates]) -> Candidates:
     if not parts:
         return Candidates(np.zeros(1, dtype=np.int64), np.zeros(0, dtype=np.int64))
     lengths = np.concatenate([np.diff(p.start) for p in parts])
-    return Candidates(
-        np.concatenate([[0], np.cumsum(lengths)]), np.concatenate([p.passes for p in parts])
-    )
+    return Candidates(np.concatenate([[0], np.cumsum(lengths)]), np.concatenate([p.passes for p in parts]))
 
 
 def batches(start: Ints) -> Iterator[slice]:

@@ -78,9 +78,8 @@ def find_passes(
         return Passes(**{name: np.zeros(shape) for name, shape in shapes.items()})
     at, angle, gash, first, last = (np.concatenate(column) for column in zip(*rows, strict=True))
     order = np.lexsort((gash, angle, at))
-    passes = _bounded(
-        cutter, motion, stock.radius, at[order], angle[order], gash[order], first[order], last[order]
-    )
+    edges = at[order], angle[order], gash[order], first[order], last[order]
+    passes = _bounded(cutter, motion, stock.radius, edges)
     samples = np.arange(len(motion.tool_angle), dtype=float)
     centre = np.stack([np.interp(passes.at, samples, column) for column in motion.centre.T], axis=1)
     keep = ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried)
@@ -91,13 +90,10 @@ def _bounded(
     cutter: Cutter,
     motion: CutterMotion,
     stock_radius: float,
-    at: Floats,
-    angle: Floats,
-    gash: Ints,
-    first: Floats,
-    last: Floats,
+    edges: tuple[Floats, Floats, Ints, Floats, Floats],
 ) -> Passes:
-    """Attach to each pass the bounds that the culling proofs need."""
+    """Passes from their (at, angle, gash, first, last), with the bounds that the culling proofs need."""
+    at, angle, gash, first, last = edges
     samples = np.arange(len(motion.tool_angle), dtype=float)
     tool_rate = np.abs(np.diff(motion.tool_angle))
     speed = stock_speed(motion, stock_radius)

@@ -90,8 +90,8 @@ def _cull(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates) -> t
         meeting = sweep.evaluate(middle[where], index, gradient=True)
         change, bent, excess = sweep.bound(meeting, index, np.repeat(radius[part], length))
         _, best = leaders(meeting.depth, start)
-        below = sweep.evaluate(corners[items].reshape(-1, 3), np.repeat(index[best], 8)).depth.reshape(-1, 8).T
-        below = below - 2.0 * bent[best]
+        below = sweep.evaluate(corners[items].reshape(-1, 3), np.repeat(index[best], 8)).depth
+        below = below.reshape(-1, 8).T - 2.0 * bent[best]
         # where another tooth or the land may take over, the corners prove nothing
         mixed = excess[best] > 0
         below[:, mixed] = (meeting.depth - change)[best[mixed]]

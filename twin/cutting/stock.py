@@ -104,7 +104,9 @@ def subtract(blank: Blank, surface: Surface | None) -> Remains:
     whole = blank.solid()
     left = whole if surface is None else whole - solid(surface.vertices, surface.faces)
     if left.is_empty():
-        raise PartError("nothing is left of the blank", remedy="the cut removes all of it; check X and the tool")
+        raise PartError(
+            "nothing is left of the blank", remedy="the cut removes all of it; check X and the tool"
+        )
     pieces = sorted(left.decompose(), key=lambda piece: -piece.volume())
     part = pieces[0]
     mesh = part.to_mesh64()

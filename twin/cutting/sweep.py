@@ -48,8 +48,12 @@ class Sweep:
         out = (np.zeros(len(index)), np.zeros(len(index)), np.zeros(len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
-            part = Meeting(*(getattr(meeting, name)[here] for name in ("depth", "gradient", "s", "rho", "instant")))
-            for whole, piece in zip(out, f.bound(part, index[here] - self._first[n], radius[here]), strict=True):
+            part = Meeting(
+                *(getattr(meeting, name)[here] for name in ("depth", "gradient", "s", "rho", "instant"))
+            )
+            for whole, piece in zip(
+                out, f.bound(part, index[here] - self._first[n], radius[here]), strict=True
+            ):
                 whole[here] = piece
         return out
 
@@ -59,9 +63,7 @@ class Sweep:
             [f.near(p, r) + self._first[n] for n, f in enumerate(self.fields)]
             for p, r in zip(points, radius, strict=True)
         ]
-        return join(
-            [Candidates(np.array([0, len(row)]), row) for row in (np.concatenate(f) for f in found)]
-        )
+        return join([Candidates(np.array([0, len(row)]), row) for row in (np.concatenate(f) for f in found)])
 
     def deepest(
         self, points: Floats, candidates: Candidates, *, gradient: bool = False

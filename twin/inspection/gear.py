@@ -12,7 +12,7 @@ from scipy.optimize import fminbound
 
 from twin.errors import PartError
 from twin.inspection.balls import choose_ball, measure_balls, over_balls
-from twin.inspection.flanks import TIP_LIMIT, locate, measure_flanks
+from twin.inspection.flanks import TIP_LIMIT, Placed, locate, measure_flanks, pitch_deviations
 from twin.inspection.involute import Involute, geometry, involute
 from twin.inspection.nominal import GearNominal
 from twin.inspection.recognise import Outline, phase_sums
@@ -107,6 +107,9 @@ def measure_gear(
     tip_diameter = 2 * float(min(tips.min(), gear.tip_diameter / 2))
     left, right = measure_flanks(solid, placed, tip_diameter=tip_diameter)
     unmeasured: dict[str, str] = {}
+    offset = _offset(solid, placed)
+    if offset is None:
+        unmeasured["flank_offset_um"] = "no flank crosses the measuring circle once"
     if nominal is None:
         left, right = (_without_slopes(flank, found, reference, unmeasured) for flank in (left, right))
     k = gear.span_teeth()
@@ -140,6 +143,7 @@ def measure_gear(
         pin_diameter_mm=ball,
         over_pins_mm=over_balls(centres, ball) if centres is not None and ball is not None else None,
         runout_um=1000 * float(np.ptp(centres)) if centres is not None else None,
+        flank_offset_um=offset,
         left=left,
         right=right,
         reference=reference,
@@ -152,6 +156,14 @@ def measure_gear(
         phase_deg=math.degrees(placed.phase),
     )
     return result, unmeasured
+
+
+def _offset(solid: Solid, placed: Placed) -> float | None:
+    """Return the mean place of all flanks on the measuring circle [µm], normal to them."""
+    left, right = pitch_deviations(solid, placed)
+    if not (np.isfinite(left).any() and np.isfinite(right).any()):
+        return None
+    return float(np.nanmean(left) + np.nanmean(right)) / 2 * math.cos(placed.gear.base_helix)
 
 
 def _without_slopes(flank: Flank, found: Found, fit: GearNominal, unmeasured: dict[str, str]) -> Flank:

@@ -20,6 +20,8 @@ MODULE_LIMIT = 0.02
 """a module relatively farther off is another gear"""
 FLANK_LIMIT = 0.1
 """flanks farther off than this, in modules, are no flanks of the named gear"""
+OFFSET_WORTH = 0.01
+"""flanks farther off than this, in modules, are worth a word"""
 CORNERS_OVER_FLATS = 1.13
 """e_min / s_min of a hexagon (ISO 4759-1)"""
 
@@ -149,31 +151,50 @@ def judge_gear(
 ) -> tuple[GearResult, Verdict, list[str]]:
     """Return the gear with its classes, the verdict and the findings, most important first."""
     classes, tolerances, exceeded = grade_gear(gear)
-    low, high = gear.teeth_range_mm
-    wrong = []
-    if not whole:
-        wrong.append(f"the teeth have their full depth only from z = {low:.2f} to {high:.2f} mm")
-    if (
-        nominal is not None
-        and nominal.face_width_mm is not None
-        and high - low < 0.98 * nominal.face_width_mm
-    ):
-        wrong.append(f"the teeth are {high - low:.2f} mm wide instead of {nominal.face_width_mm:g} mm")
-    allowed = nominal.accuracy_class if nominal is not None else None
-    holes = [item for item in GRADED if item not in worst_values(gear)]
-    if allowed is not None and classes and holes:
-        wrong += [
-            f"{_WORDS[item]} cannot be measured: {unmeasured.get(item + '_um', HOLES)}" for item in holes
-        ]
     result = replace(gear, accuracy_class=classes, tolerances_um=tolerances)
-    if not classes:
-        return result, Verdict.OUT if wrong else Verdict.NOT_GRADED, wrong + exceeded
-    wrong += exceeded
+    wrong = _unfinished(gear, nominal, whole=whole)
+    notes = _infeed(gear) if nominal is not None else []
+    if abs(gear.flank_offset_um or 0.0) > 1000 * FLANK_LIMIT * gear.reference.normal_module_mm:
+        wrong, notes = wrong + notes, []
+    allowed = nominal.accuracy_class if nominal is not None else None
+    if classes and allowed is not None:
+        measured = worst_values(gear)
+        wrong += [
+            f"{_WORDS[item]} cannot be measured: {unmeasured.get(item + '_um', HOLES)}"
+            for item in GRADED
+            if item not in measured
+        ]
+        wrong += exceeded
+        exceeded = []
     if wrong:
-        return result, Verdict.OUT, wrong
+        return result, Verdict.OUT, wrong + exceeded + notes
+    if not classes:
+        return result, Verdict.NOT_GRADED, exceeded + notes
     if allowed is None:
-        return result, Verdict.NOT_GRADED, ["no accuracy class was named to judge by"]
-    return result, Verdict.IN, [f"all measured items hold class {allowed} of ISO 1328-1:2013"]
+        return result, Verdict.NOT_GRADED, ["no accuracy class was named to judge by", *notes]
+    return result, Verdict.IN, [f"all measured items hold class {allowed} of ISO 1328-1:2013", *notes]
+
+
+def _unfinished(gear: GearResult, nominal: GearNominal | None, *, whole: bool) -> list[str]:
+    """Say where teeth are missing."""
+    words = []
+    low, high = gear.teeth_range_mm
+    if not whole:
+        words.append(f"the teeth have their full depth only from z = {low:.2f} to {high:.2f} mm")
+    wanted = nominal.face_width_mm if nominal is not None else None
+    if wanted is not None and high - low < 0.98 * wanted:
+        words.append(f"the teeth are {high - low:.2f} mm wide instead of {wanted:g} mm")
+    return words
+
+
+def _infeed(gear: GearResult) -> list[str]:
+    """Say whether the teeth are too thick or too thin, where that is worth a word."""
+    offset = gear.flank_offset_um
+    if offset is None or abs(offset) <= 1000 * OFFSET_WORTH * gear.reference.normal_module_mm:
+        return []
+    if offset > 0:
+        return [f"the flanks lie {offset:.0f} µm outside the nominal: teeth too thick, not cut to depth"]
+    return [f"the flanks lie {-offset:.0f} µm inside the nominal: teeth too thin, cut too deep"]
 
 
 def judge_polygon(

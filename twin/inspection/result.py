@@ -83,6 +83,8 @@ class GearResult:
     """mean over opposite balls"""
     runout_um: float | None
     """F_r, range of the depth of a ball in every gap"""
+    flank_offset_um: float | None
+    """how far all flanks lie outside the reference's on average, normal to them: too thick a tooth is +"""
     left: Flank
     right: Flank
     reference: GearNominal

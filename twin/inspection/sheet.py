@@ -50,6 +50,7 @@ def _gear(gear: GearResult) -> dict[str, Any]:
         "pin_diameter_mm": gear.pin_diameter_mm,
         "over_pins_mm": gear.over_pins_mm,
         "runout_um": gear.runout_um,
+        "flank_offset_um": gear.flank_offset_um,
         "flanks": {"left": _flank(gear.left), "right": _flank(gear.right)},
         "accuracy_class": gear.accuracy_class,
         "tolerances_um": gear.tolerances_um,

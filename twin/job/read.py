@@ -76,7 +76,10 @@ class _Reader:
             inspection=self._table(InspectionTable, ("inspection",)),
         )
         if work.bore_mm >= work.diameter_mm:
-            self._fail(("work", "bore_mm"), f"bore_mm {work.bore_mm:g} is not inside diameter_mm {work.diameter_mm:g}")
+            self._fail(
+                ("work", "bore_mm"),
+                f"bore_mm {work.bore_mm:g} is not inside diameter_mm {work.diameter_mm:g}",
+            )
         return job
 
     def _setup(self) -> SetupTable:
@@ -136,10 +139,10 @@ class _Reader:
             filled["tip_radius_factor"] = tool.tip_radius_factor
         return dataclasses.replace(nominal, **filled)
 
-    def _tagged(self, kinds: Mapping[str, type], path: tuple[str, ...]) -> Any:  # noqa: ANN401
+    def _tagged(self, kinds: Mapping[str, type], path: tuple[str, ...]) -> Any:
         raw = self._raw(path)
         kind = raw.get("kind")
-        if kind not in kinds:
+        if not isinstance(kind, str) or kind not in kinds:
             self._fail((*path, "kind"), f"unknown kind {kind!r} of {'.'.join(path)}", ", ".join(kinds))
         return self._table(kinds[kind], path, extra=("kind",))
 

@@ -14,7 +14,8 @@ _TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
     '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
     '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
-    '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
+    '<Default Extension="model" '
+    'ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'
 )
 _RELATIONS = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -35,8 +36,8 @@ def write_meshes(folder: Path, vertices: Floats, faces: Ints) -> None:
 
 def _write_3mf(path: Path, vertices: Floats, faces: Ints) -> None:
     """3MF core specification 1.3: one object in millimetres; to the nanometre."""
-    points = "".join('<vertex x="%.6f" y="%.6f" z="%.6f"/>' % (x, y, z) for x, y, z in vertices.tolist())
-    triangles = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % (a, b, c) for a, b, c in faces.tolist())
+    points = "".join(f'<vertex x="{x:.6f}" y="{y:.6f}" z="{z:.6f}"/>' for x, y, z in vertices.tolist())
+    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces.tolist())
     model = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<model unit="millimeter" xml:lang="en-US" '

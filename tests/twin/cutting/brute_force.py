@@ -32,7 +32,7 @@ def hob_outlines(*, module, outside_diameter, starts, pressure_angle, addendum, 
     right = np.vstack([arc, [[flank(DEEP), DEEP]]])
     tooth = np.vstack([right[::-1] * [-1, 1], right])
     root = top - (addendum + dedendum) * module
-    teeth = [tooth + [k * pitch, 0] for k in (-1, 0, 1)]
+    teeth = [tooth + np.array([k * pitch, 0.0]) for k in (-1, 0, 1)]
     return [*teeth, np.array([[-1e4, root], [1e4, root]])], pitch
 
 

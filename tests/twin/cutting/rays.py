@@ -23,7 +23,7 @@ def deepest(field, points):
 
 
 def crossing(field, points, along, *, rounds=8):
-    """How far (n,) the cut surface stands from points (n, 3) near it, along unit vectors (n, 3) into the part."""
+    """How far (n,) the cut surface stands from points (n, 3), along unit vectors (n, 3) into the part."""
     way = np.zeros(len(points))
     for _ in range(rounds):
         depth, gradient = deepest(field, points + way[:, None] * along)

@@ -1,6 +1,7 @@
 """The mesh of a cut part: closed, on the envelope of the passes, and of the right volume."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -153,7 +154,21 @@ def test_a_tool_that_stays_away_leaves_the_blank(synthetic):
     )
     result = cut(blank, (tool,), cell_mm=0.5)
     assert result.remains.volume_mm3 == result.remains.blank_volume_mm3
-    assert result.notes == ("the tool never came near the blank: nothing was cut",)
+    assert result.notes == ("no edge ever swung past the blank: nothing was cut",)
+
+
+def test_a_standing_tool_that_the_work_rubs_on_is_told(synthetic):
+    blank = Blank(diameter_mm=19.0, length_mm=3.0)
+    cutter, motion = synthetic.polygon_turning(
+        HEAD, ratio=2, across_flats=17.0, work_turns=1, z=(-1.0, -1.0), step_deg=2.0
+    )
+    standing = replace(motion, tool_angle=np.zeros_like(motion.tool_angle))
+    result = cut(blank, ((cutter, standing),), cell_mm=0.5)
+    assert result.remains.volume_mm3 == result.remains.blank_volume_mm3
+    assert (
+        "the tool stood still within the blank's outline while the blank moved 59.7 mm past it"
+        in result.notes[0]
+    )
 
 
 def test_a_cut_through_the_wall_severs_the_ring(synthetic):

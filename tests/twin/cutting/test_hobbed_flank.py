@@ -1,4 +1,4 @@
-"""What an ideal machine leaves on a hobbed tooth, from the field along normals: closed forms of geometry.md."""
+"""What an ideal machine leaves on a hobbed tooth, from the field along normals, against closed forms."""
 
 import math
 
@@ -33,7 +33,7 @@ def involute(module, teeth, xi, z):
 
 
 def cusps(deviation):
-    """Indices of the peaks of the surplus (least deviation) and the peaks' height over their neighbours' line."""
+    """Indices of the peaks of the surplus (−deviation), and their height over the valleys beside them."""
     surplus = -deviation
     inner = slice(1, -1)
     peak = 1 + np.flatnonzero((surplus[inner] > surplus[:-2]) & (surplus[inner] >= surplus[2:]))
@@ -63,10 +63,10 @@ def test_generating_flats(synthetic):
 
 
 def test_feed_marks_on_the_flank(synthetic):
-    """f² sin α/(8 ρ) across the flank; ρ of the hob is d_a0/2 at its tip, where the formula of the trade holds."""
+    """f² sin α/(8 ρ) across the flank, ρ the hob's radius there; δ_x takes d_a0/2 for it."""
     feed = 2.0
     hob = Hob(normal_module_mm=2.0, outside_diameter_mm=70.0)
-    field = spur(synthetic, hob, teeth=20, feed=feed, z=6.0)
+    field = spur(synthetic, hob, teeth=20, feed=feed, z=4.4)
     base = 20 * math.cos(ALPHA)
     z = np.linspace(-1.1 * feed, 1.1 * feed, 801)
     for xi in (0.2, math.tan(ALPHA), 0.5):
@@ -82,7 +82,7 @@ def test_feed_marks_on_the_flank(synthetic):
 def test_feed_marks_in_the_root(synthetic):
     """Radially f²/(4 d_a0) = 14.3 µm for f 2, d_a0 70."""
     hob = Hob(normal_module_mm=2.0, outside_diameter_mm=70.0)
-    field = spur(synthetic, hob, teeth=20, feed=2.0, z=6.0)
+    field = spur(synthetic, hob, teeth=20, feed=2.0, z=4.4)
     z = np.linspace(-2.2, 2.2, 801)
     points = np.stack([np.full(len(z), 17.5), np.zeros(len(z)), z], axis=1)
     deviation = crossing(field, points, np.broadcast_to([-1.0, 0.0, 0.0], points.shape))

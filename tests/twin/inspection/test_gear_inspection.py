@@ -287,6 +287,28 @@ def test_class_and_verdict_by_what_was_put_in(parts, named):
     assert inspect(*mesh, named()).verdict is Verdict.NOT_GRADED
 
 
+@pytest.mark.parametrize(
+    ("shift", "verdict", "words"),
+    [
+        (0.4, Verdict.OUT, "274 µm outside the nominal: teeth too thick, not cut to depth"),
+        (0.1, Verdict.IN, "68 µm outside the nominal"),
+        (-0.1, Verdict.IN, "68 µm inside the nominal: teeth too thin, cut too deep"),
+        (0.0, Verdict.IN, ""),
+    ],
+)
+def test_infeed_shows_in_the_flanks(parts, named, shift, verdict, words):
+    """An infeed error x m moves each flank by x m sin alpha_n: geometry.md 5, half of the span's change."""
+    mesh = parts.gear_mesh(
+        teeth=20, module=2.0, shift=shift, tip_factor=1.0 - shift, z_step=5.0, roll_step=0.1
+    )
+    result = inspect(*mesh, named(accuracy_class=8))
+    offset = 1000 * shift * 2.0 * math.sin(ALPHA)
+    assert result.gear.flank_offset_um == near(offset)
+    assert result.gear.span_mm == pytest.approx(15.32088 + 2 * offset / 1000, abs=1e-3)
+    assert result.verdict is verdict
+    assert any(words in finding for finding in result.findings)
+
+
 def test_outside_the_standard_nothing_is_graded(parts, named):
     mesh = parts.gear_mesh(teeth=20, module=2.0, width=3.0, z_step=0.5, roll_step=0.2)
     result = inspect(*mesh, named(accuracy_class=8))

@@ -164,6 +164,7 @@ def gear_inspection():
         pin_diameter_mm=3.5,
         over_pins_mm=44.9293,
         runout_um=18.3,
+        flank_offset_um=1.2,
         left=flank(1.0),
         right=flank(-1.0),
         reference=nominal,
