@@ -119,7 +119,7 @@ def test_a_feed_that_stops_halfway_leaves_the_run_out_of_the_hob(tmp_path):
     points = trimesh.load_mesh(out / "part.stl").vertices
     r = np.hypot(points[:, 0], points[:, 1])
     # swivelled by its lead angle, the hob's circle is an ellipse in the gap's plane: 35 cos(1.76°) is 17 µm
-    for low, high in [(-9.0, -2.0), (-13.0, -12.9), (-16.0, -15.9), (-19.0, -18.9)]:
+    for low, high in [(-9.0, -2.0), (-13.0, -12.4), (-16.0, -15.4), (-19.0, -18.4)]:
         here = (points[:, 2] > low) & (points[:, 2] < high) & (r > 10)
         z = np.minimum(points[here, 2], -10.0)
         floor = 17.5 + 35.0 - np.sqrt(35.0**2 - (z + 10.0) ** 2)

@@ -85,10 +85,10 @@ def _missed(inspection: Inspection, came: str) -> str:
         asked = f"{plain(nominal.across_flats_mm)} mm {nominal.tolerance}"
         return f"The part is {came}{caliper}, but out of tolerance: {asked} was wanted."
     if gear and isinstance(nominal, GearNominal) and wanted(nominal).startswith(came):
-        reached = gear.accuracy_class.get("overall")
-        classes = (
-            f": class {reached} of ISO 1328-1 reached, {nominal.accuracy_class} allowed" if reached else ""
-        )
+        reached, allowed = gear.accuracy_class.get("overall"), nominal.accuracy_class
+        if reached is not None and allowed is not None and reached <= allowed:
+            return f"The part is {came}, with flanks of class {reached}, but it is not whole or not to size."
+        classes = f": class {reached} of ISO 1328-1 reached, {allowed} allowed" if reached else ""
         return f"The part is {came}, as wanted, but it is out of tolerance{classes}."
     return f"The part is not what was wanted. It came out as {came}; wanted was {wanted(nominal)}."
 

@@ -127,3 +127,13 @@ def test_measured_but_not_judged(sample):
         head.sentence
         == "The part came out as a hexagon, 17.000 mm across flats. It was measured, not judged."
     )
+
+
+def test_a_gear_of_good_class_that_is_out_for_another_reason(sample):
+    inspection = sample.gear_inspection()
+    gear = replace(inspection.gear, accuracy_class={"overall": 6})
+    inspection = replace(inspection, gear=gear, verdict=Verdict.OUT)
+    assert headline(ReportData(title="t", inspection=inspection)).sentence == (
+        "The part is a spur gear with 20 teeth, module 2 mm, with flanks of class 6, "
+        "but it is not whole or not to size."
+    )
