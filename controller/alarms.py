@@ -178,6 +178,21 @@ class Alarm:
         return f"{head}: found {self.found}; valid: {self.remedy}"
 
 
+def as_json(alarm: Alarm) -> dict[str, str | int | None]:
+    """An alarm as plain values, place from 1."""
+    span = alarm.span or Span(file="")
+    return {
+        "number": alarm.number,
+        "class": alarm.kind.value,
+        "text": alarm.text,
+        "file": span.file or None,
+        "line": span.line,
+        "column": span.column,
+        "found": alarm.found,
+        "remedy": alarm.remedy,
+    }
+
+
 class ControllerError(Exception):
     """Something the user of the controller can mend. `str()` is the one line to print."""
 

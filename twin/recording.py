@@ -1,8 +1,9 @@
 """The recorded run: every axis over time, and where the tool was in the part's frame."""
 
+import io
+import zipfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,22 +58,29 @@ class Recording:
 
     def save(self, path: Path) -> None:
         """Write `recording.npz`: per axis letter `setpoint_X`, `actual_X`, …; the rest under its own name."""
-        columns: dict[str, Any] = {}
+        columns: dict[str, NDArray] = {}
         for k, letter in enumerate(self.axes):
             columns[f"setpoint_{letter}"] = self.setpoint[:, k]
             columns[f"actual_{letter}"] = self.actual[:, k]
-        np.savez_compressed(
-            path,
-            time_s=self.time_s,
-            axes=np.array(self.axes),
-            block=self.block,
-            blocks=np.array([(b.file, str(b.line), b.text) for b in self.blocks], dtype=str).reshape(-1, 3),
-            tool=self.tool,
-            sync=self.sync,
-            work_angle_deg=self.work_angle_deg,
-            tool_angle_deg=self.tool_angle_deg,
-            tool_centre_mm=self.tool_centre_mm,
-            tool_axis=self.tool_axis,
-            tool_zero=self.tool_zero,
-            **columns,
-        )
+        columns |= {
+            "time_s": self.time_s,
+            "axes": np.array(self.axes),
+            "block": self.block,
+            "blocks": np.array([(b.file, str(b.line), b.text) for b in self.blocks], dtype=str).reshape(
+                -1, 3
+            ),
+            "tool": self.tool,
+            "sync": self.sync,
+            "work_angle_deg": self.work_angle_deg,
+            "tool_angle_deg": self.tool_angle_deg,
+            "tool_centre_mm": self.tool_centre_mm,
+            "tool_axis": self.tool_axis,
+            "tool_zero": self.tool_zero,
+        }
+        # numpy's own writer stamps the hour into the file: the same run would not give the same bytes
+        with zipfile.ZipFile(path, "w") as package:
+            for name, column in columns.items():
+                data = io.BytesIO()
+                np.lib.format.write_array(data, np.ascontiguousarray(column), allow_pickle=False)
+                entry = zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0))
+                package.writestr(entry, data.getbuffer(), zipfile.ZIP_DEFLATED, compresslevel=1)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from controller.alarms import Alarm
+from controller.alarms import as_json
 from controller.cnc import Controller
 from controller.dry_run import dry_run
 from controller.parameters import delivered
@@ -110,8 +110,8 @@ def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
         _json(
             folder / "alarms.json",
             {
-                "alarms": [_alarm(a) for a in session.alarms],
-                "warnings": [_alarm(a) for a in session.warnings],
+                "alarms": [as_json(a) for a in session.alarms],
+                "warnings": [as_json(a) for a in session.warnings],
             },
         )
     origin = provenance(
@@ -136,16 +136,3 @@ def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
 
 def _json(path: Path, value: object) -> None:
     path.write_text(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
-
-
-def _alarm(alarm: Alarm) -> dict[str, object]:
-    return {
-        "number": alarm.number,
-        "class": alarm.kind.value,
-        "text": alarm.text,
-        "file": alarm.span.file if alarm.span else None,
-        "line": alarm.span.line if alarm.span else None,
-        "column": alarm.span.column if alarm.span else None,
-        "found": alarm.found,
-        "remedy": alarm.remedy,
-    }

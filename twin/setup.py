@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from controller.offsets import Offsets
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
-from twin.errors import InputError, Place
 from twin.inspection.nominal import GearNominal
 from twin.job.schema import Job, Tool
 from twin.kinematics import Kinematics, read_kinematics
@@ -20,6 +19,7 @@ from twin.machine import (
     assemble,
     load_machine,
 )
+from twin.presets import cutters_of, offsets_of
 
 ARBOR = 0.6
 """Arbor diameter over root diameter where a job names none."""
@@ -55,7 +55,7 @@ def make_ready(job: Job) -> Ready:
     spec = load_machine(job.machine.model)
     setup = Setup(job.machine.setup)
     zero = MachineZero(x_mm=job.setup.reference.X, z_mm=job.setup.reference.Z)
-    cutters = {number: _cutter(job, tool) for number, tool in job.tools.items()}
+    cutters = cutters_of(job)
     first = next(iter(cutters.values()))
     work = WorkMount(
         diameter_mm=job.work.diameter_mm,
@@ -78,25 +78,10 @@ def make_ready(job: Job) -> Ready:
         spec=spec,
         setup=setup,
         tools=tuple(tools),
-        offsets=_offsets(job, cutters),
+        offsets=offsets_of(job, cutters),
         work_column=tools[0].kinematics.work.spindle.column,
         tool_column=tools[0].kinematics.tool.spindle.column,
     )
-
-
-def _cutter(job: Job, tool: Tool) -> Cutter:
-    if not isinstance(tool, Hob):
-        return tool.cutter()
-    if tool.swivel_deg is not None:
-        return tool.cutter(math.radians(tool.swivel_deg))
-    if not isinstance(job.nominal, GearNominal):
-        raise InputError(
-            "the hob's swivel is not known: the job has no nominal gear",
-            place=Place(file=str(job.path)),
-            remedy='swivel_deg in [tool], or [nominal] kind = "gear"',
-        )
-    # swivel = helix angle − lead angle, both with the sign of their hand (geometry.md, section 2)
-    return tool.cutter(math.radians(job.nominal.helix_angle_deg) - tool.lead_angle)
 
 
 def _root_diameter(job: Job) -> float:
@@ -120,18 +105,3 @@ def _length(job: Job, tool: Tool) -> float:
     if isinstance(tool, Hob):
         return tool.length_mm or max(0.8 * tool.outside_diameter_mm, 1.2 * job.work.diameter_mm)
     return 4.0 * tool.edge_width_mm + 10.0
-
-
-def _offsets(job: Job, cutters: dict[int, Cutter]) -> Offsets:
-    """Presets: X reads the diameter at the tool's tip, Z0 the front face (controller.md, section 0)."""
-    reference = job.setup.reference
-    first = next(iter(cutters.values()))
-    work = {"G54": {"X": -reference.X, "Z": -reference.Z}, **job.setup.offsets}
-    tools: dict[int, dict[str, float]] = {
-        number: {"X": 2.0 * (first.radius - cutter.radius)} for number, cutter in cutters.items() if number
-    }
-    for name, values in job.setup.tool_offsets.items():
-        if not name.isdigit():
-            raise InputError(f"tool_offsets: {name!r} is no number", place=Place(file=str(job.path)))
-        tools[int(name)] = dict(values)
-    return Offsets(work=work, tool=tools)

@@ -4,7 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
-from controller.alarms import Alarm
+from controller.alarms import Alarm, as_json
 from controller.dry_run import DryRun, dry_run
 from controller.offsets import Offsets
 from controller.parameters import delivered
@@ -20,14 +20,14 @@ def check_command(options: argparse.Namespace) -> ExitCode:
     signals = {name: value != "0" for name, value in asked.items()}
     if target.is_dir() or target.suffix == ".toml":
         from twin.job import read_job  # noqa: PLC0415 - a bare program needs none of this
-        from twin.setup import make_ready  # noqa: PLC0415
+        from twin.presets import cutters_of, offsets_of  # noqa: PLC0415
 
         job = read_job(target)
         if options.setup and options.setup != job.machine.setup:
             raise InputError(f"--setup {options.setup}: the job says {job.machine.setup}")
         parameters = delivered(job.machine.setup, {**job.machine.parameters, **overrides})
         signals = {**{k: bool(v) for k, v in job.machine.signals.items()}, **signals}
-        program, offsets = load_program(job.program), make_ready(job).offsets
+        program, offsets = load_program(job.program), offsets_of(job, cutters_of(job))
     else:
         if not target.exists():
             raise InputError("there is no such file", place=Place(file=str(target)))
@@ -71,26 +71,12 @@ def _github(alarm: Alarm) -> str:
 
 def _json(found: DryRun) -> dict[str, object]:
     return {
-        "alarms": [_alarm(a) for a in found.alarms],
-        "warnings": [_alarm(a) for a in found.warnings],
+        "alarms": [as_json(a) for a in found.alarms],
+        "warnings": [as_json(a) for a in found.warnings],
         "cycle_time_s": found.cycle_time_s,
         "final": {"absolute": dict(found.absolute), "machine": dict(found.machine)},
         "extents": {
             letter: {"absolute": list(e.absolute), "machine": list(e.machine)}
             for letter, e in found.extents.items()
         },
-    }
-
-
-def _alarm(alarm: Alarm) -> dict[str, object]:
-    span = alarm.span
-    return {
-        "number": alarm.number,
-        "class": alarm.kind.value,
-        "text": alarm.text,
-        "file": span.file if span else None,
-        "line": span.line if span else None,
-        "column": span.column if span else None,
-        "found": alarm.found,
-        "remedy": alarm.remedy,
     }
