@@ -84,3 +84,8 @@ class Recording:
                 np.lib.format.write_array(data, np.ascontiguousarray(column), allow_pickle=False)
                 entry = zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0))
                 package.writestr(entry, data.getbuffer(), zipfile.ZIP_DEFLATED, compresslevel=1)
+
+
+def _texts(blocks: tuple[BlockRef, ...]) -> NDArray[np.str_]:
+    """(b, 3) file, line, text."""
+    return np.array([(b.file, str(b.line), b.text) for b in blocks], dtype=str).reshape(-1, 3)
