@@ -118,14 +118,22 @@ def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
     """Cross sections with circles of `radii` (m,) [mm], ascending; exact on each chord."""
     r_start = np.hypot(*segments.start.T)
     r_end = np.hypot(*segments.end.T)
-    first, count = _spans(np.minimum(r_start, r_end), np.maximum(r_start, r_end), radii)
-    segment, circle = _expand(first, count)
+    # a chord comes nearer to the axis up to its foot and leaves it from there: two crossings are possible
+    along = segments.end - segments.start
+    length2 = np.einsum("ij,ij->i", along, along)
+    foot = -np.einsum("ij,ij->i", segments.start, along) / np.where(length2 > 0, length2, 1.0)
+    nearest = np.hypot(*(segments.start + foot[:, None] * along).T)
+    nearest = np.where(foot <= 0, r_start, np.where(foot >= 1, r_end, nearest))
+    nearest = np.minimum(nearest, np.minimum(r_start, r_end))
+    first, count = _spans(np.tile(nearest, 2), np.concatenate([r_start, r_end]), radii)
+    piece, circle = _expand(first, count)
+    left = piece < len(foot)
+    segment = piece % max(len(foot), 1)
     p = segments.start[segment]
-    d = segments.end[segment] - p
-    a = np.einsum("ij,ij->i", d, d)
+    d = along[segment]
+    a = length2[segment]
     b = np.einsum("ij,ij->i", p, d)
     c = np.einsum("ij,ij->i", p, p) - radii[circle] ** 2
-    left = r_start[segment] > r_end[segment]
     root = np.sqrt(np.maximum(b * b - a * c, 0.0))
     t = np.clip((np.where(left, -root, root) - b) / a, 0.0, 1.0)
     point = p + t[:, None] * d

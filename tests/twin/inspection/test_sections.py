@@ -3,7 +3,7 @@ import math
 import manifold3d as m3
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from twin.inspection.sections import (
@@ -44,6 +44,7 @@ def test_sections_are_closed_and_have_the_kernels_area(angles, spread, z):
 
 
 @given(angles=st.tuples(angle, angle, angle), spread=st.floats(8, 20), radius=st.floats(1.5, 9))
+@example(angles=(0.0, 23.0, 0.0), spread=10.0, radius=6.0)  # the circle cuts one chord twice
 @settings(max_examples=40, deadline=None)
 def test_circle_crossings_bound_the_arcs_inside(angles, spread, radius):
     """Right flanks open and left flanks close the arcs of a circle that lie in the section."""
