@@ -17,6 +17,7 @@ from twin.cutting.cut import cut
 from twin.cutting.stock import Blank
 from twin.job import read_job
 from twin.machine import IdealMachine, MujocoMachine
+from twin.presets import cutters_of, settings_of
 from twin.session import record
 from twin.setup import make_ready
 
@@ -42,13 +43,14 @@ def controller_blocks(blocks: int = 20_000) -> None:
 def machine_ticks(scene: str = "hexagon_af17") -> None:
     """Control ticks of the physical machine, against machine time."""
     job = read_job(SCENES / scene)
-    ready = make_ready(job)
-    program, parameters = load_program(job.program), delivered(job.machine.setup, job.machine.parameters)
+    cutters = cutters_of(job)
+    ready, settings = make_ready(job, cutters), settings_of(job, cutters)
+    program = load_program(job.program)
     for name, machine in (
         ("ideal", IdealMachine(len(ready.tools[0].assembly.joints))),
         ("mujoco", MujocoMachine(ready.tools[0].assembly)),
     ):
-        controller = Controller(program, parameters=parameters, offsets=ready.offsets)
+        controller = Controller(program, parameters=settings.parameters, offsets=settings.offsets)
         start = time.perf_counter()
         ticks = len(record(controller, machine, ready).recording.time_s)
         seconds = time.perf_counter() - start
@@ -63,12 +65,10 @@ def machine_ticks(scene: str = "hexagon_af17") -> None:
 def kernel(scene: str) -> None:
     """The cut of a scene on ideal axes, against one boolean of a blank minus 20 lofts."""
     job = read_job(SCENES / scene)
-    ready = make_ready(job)
-    controller = Controller(
-        load_program(job.program),
-        parameters=delivered(job.machine.setup, job.machine.parameters),
-        offsets=ready.offsets,
-    )
+    cutters = cutters_of(job)
+    ready, settings = make_ready(job, cutters), settings_of(job, cutters)
+    program = load_program(job.program)
+    controller = Controller(program, parameters=settings.parameters, offsets=settings.offsets)
     motions = record(controller, IdealMachine(len(controller.axes)), ready).motions
     blank = Blank(diameter_mm=job.work.diameter_mm, length_mm=job.work.length_mm, bore_mm=job.work.bore_mm)
     start = time.perf_counter()

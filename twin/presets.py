@@ -1,13 +1,66 @@
 """What a job presets before anything moves: each tool's edges and swivel, and the controller's offsets."""
 
 import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 
+from controller.alarms import AlarmError, ControllerError
+from controller.events import check_signals
+from controller.machine_data import machine_data
 from controller.offsets import Offsets
+from controller.parameters import Parameters, delivered
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
 from twin.errors import InputError, Place
 from twin.inspection.nominal import GearNominal
+from twin.job.locate import line_of
 from twin.job.schema import Job, Tool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControllerSettings:
+    """What the controller is switched on with."""
+
+    parameters: Parameters
+    offsets: Offsets
+    signals: Mapping[str, bool]
+
+
+def settings_of(
+    job: Job,
+    cutters: Mapping[int, Cutter],
+    *,
+    parameters: Mapping[str, str] | None = None,
+    signals: Mapping[str, bool] | None = None,
+) -> ControllerSettings:
+    """Settings of a job, with those of the command line on top.
+
+    Raises InputError, at the table of the job, for what the controller does not have.
+    """
+    with _said_of(job, "machine", "parameters"):
+        values = delivered(job.machine.setup, {**job.machine.parameters, **(parameters or {})})
+    given = {**{name: bool(value) for name, value in job.machine.signals.items()}, **(signals or {})}
+    with _said_of(job, "machine", "signals"):
+        check_signals(given)
+    offsets = offsets_of(job, cutters)
+    with _said_of(job, "setup"):
+        offsets.check(machine_data(values))
+    return ControllerSettings(parameters=values, offsets=offsets, signals=given)
+
+
+@contextmanager
+def _said_of(job: Job, *path: str) -> Iterator[None]:
+    """Give the controller's refusals the place in the job."""
+    try:
+        yield
+    except AlarmError:
+        raise
+    except ControllerError as cause:
+        line = line_of(job.path.read_text(encoding="utf-8"), path)
+        place = Place(file=str(job.path), line=line)
+        remedy = f"valid: {cause.remedy}" if cause.remedy else ""
+        raise InputError(cause.text, place=place, remedy=remedy) from cause
 
 
 def cutters_of(job: Job) -> dict[int, Cutter]:
@@ -15,13 +68,13 @@ def cutters_of(job: Job) -> dict[int, Cutter]:
     return {number: _cutter(job, tool) for number, tool in job.tools.items()}
 
 
-def offsets_of(job: Job, cutters: dict[int, Cutter]) -> Offsets:
+def offsets_of(job: Job, cutters: Mapping[int, Cutter]) -> Offsets:
     """Presets: X reads the diameter at the tool's tip, Z0 the front face (controller.md, section 0)."""
     reference = job.setup.reference
     first = next(iter(cutters.values()))
     work = {"G54": {"X": -reference.X, "Z": -reference.Z}, **job.setup.offsets}
     tools: dict[int, dict[str, float]] = {
-        number: {"X": 2.0 * (first.radius - cutter.radius)} for number, cutter in cutters.items() if number
+        number: {"X": 2.0 * (cutter.radius - first.radius)} for number, cutter in cutters.items() if number
     }
     for name, values in job.setup.tool_offsets.items():
         if not name.isdigit():

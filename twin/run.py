@@ -11,7 +11,6 @@ from pathlib import Path
 from controller.alarms import as_json
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.parameters import delivered
 from controller.source import load_program
 from twin.cutting.cut import cut
 from twin.cutting.stock import Blank
@@ -24,6 +23,7 @@ from twin.outcome import Options, Outcome
 from twin.output.folder import require_replaceable, result_folder
 from twin.output.meshes import write_meshes
 from twin.output.provenance import provenance
+from twin.presets import cutters_of, settings_of
 from twin.progress import Reporter, Silent
 from twin.report.page import write_report
 from twin.session import CHUNK, record
@@ -57,11 +57,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     require_replaceable(out)
     watch = Stopwatch()
     with watch.measure("set-up"):
-        ready = make_ready(job)
-        parameters = delivered(job.machine.setup, job.machine.parameters)
+        cutters = cutters_of(job)
+        settings = settings_of(job, cutters)
+        ready = make_ready(job, cutters)
         program = load_program(job.program)
-        signals = {name: bool(value) for name, value in job.machine.signals.items()}
-        cycle = dry_run(program, parameters, ready.offsets, signals).cycle_time_s
+        cycle = dry_run(program, settings.parameters, settings.offsets, settings.signals).cycle_time_s
     period = ready.spec.control_period_s
     samples = math.ceil(cycle / period)
     tell.stage(
@@ -69,7 +69,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     )
     with watch.measure("machine"):
         controller = Controller(
-            program, parameters=parameters, offsets=ready.offsets, tick_s=period, signals=signals
+            program,
+            parameters=settings.parameters,
+            offsets=settings.offsets,
+            tick_s=period,
+            signals=settings.signals,
         )
         machine = (
             IdealMachine(len(controller.axes)) if options.ideal else MujocoMachine(ready.tools[0].assembly)

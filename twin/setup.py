@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 
-from controller.offsets import Offsets
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
 from twin.inspection.nominal import GearNominal
@@ -19,7 +18,6 @@ from twin.machine import (
     assemble,
     load_machine,
 )
-from twin.presets import cutters_of, offsets_of
 
 ARBOR = 0.6
 """Arbor diameter over root diameter where a job names none."""
@@ -43,19 +41,20 @@ class Ready:
     setup: Setup
     tools: tuple[MountedTool, ...]
     """the first one is in the spindle when the program starts"""
-    offsets: Offsets
     work_column: int
     """of the work spindle among the system axes"""
     tool_column: int
     """of the tool spindle"""
 
 
-def make_ready(job: Job) -> Ready:
-    """Mount work and tools. Raises InputError where the job contradicts itself or the machine."""
+def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
+    """Mount work and tools, `cutters` by tool number.
+
+    Raises InputError where the job contradicts itself or the machine.
+    """
     spec = load_machine(job.machine.model)
     setup = Setup(job.machine.setup)
     zero = MachineZero(x_mm=job.setup.reference.X, z_mm=job.setup.reference.Z)
-    cutters = cutters_of(job)
     first = next(iter(cutters.values()))
     work = WorkMount(
         diameter_mm=job.work.diameter_mm,
@@ -78,7 +77,6 @@ def make_ready(job: Job) -> Ready:
         spec=spec,
         setup=setup,
         tools=tuple(tools),
-        offsets=offsets_of(job, cutters),
         work_column=tools[0].kinematics.work.spindle.column,
         tool_column=tools[0].kinematics.tool.spindle.column,
     )

@@ -71,7 +71,7 @@ def _gear_lines(gear: GearResult) -> list[str]:
         size += f", span over {gear.span_teeth} teeth {gear.span_mm:.4f} mm"
     return [
         f"  {gear.number_of_teeth} teeth, module {gear.normal_module_mm:.4f} mm, "
-        f"helix {gear.helix_angle_deg:+.4f}° ({gear.hand})",
+        f"helix {_signed(gear.helix_angle_deg, 4)}° ({gear.hand})",
         size,
         row("profile slope f_Hα", a.profile_slope_um, b.profile_slope_um),
         row("profile form f_fα", a.profile_form_um, b.profile_form_um),
@@ -82,6 +82,12 @@ def _gear_lines(gear: GearResult) -> list[str]:
     ]
 
 
+def _signed(value: float, digits: int) -> str:
+    """A number with its sign, and no sign on what rounds to zero."""
+    rounded = round(value, digits)
+    return f"{rounded:+.{digits}f}" if rounded else f"{0.0:.{digits}f}"
+
+
 def _polygon_lines(polygon: PolygonResult) -> list[str]:
     def mm(value: float | None) -> str:
         return "—" if value is None else f"{value:.4f} mm"
@@ -89,8 +95,8 @@ def _polygon_lines(polygon: PolygonResult) -> list[str]:
     return [
         f"  {polygon.number_of_sides} sides, across flats {mm(polygon.across_flats_mm)}, "
         f"by caliper {mm(polygon.across_flats_caliper_mm)}, across corners {mm(polygon.across_corners_mm)}",
-        f"  bow {polygon.bow_um:+.2f} µm ({'convex' if polygon.bow_um >= 0 else 'concave'}), "
-        f"flatness {polygon.flatness_um:.2f} µm, twist {polygon.twist_deg_per_mm:+.4f} °/mm",
+        f"  bow {_signed(polygon.bow_um, 2)} µm ({'concave' if polygon.bow_um < -0.005 else 'convex'}), "
+        f"flatness {polygon.flatness_um:.2f} µm, twist {_signed(polygon.twist_deg_per_mm, 4)} °/mm",
     ]
 
 

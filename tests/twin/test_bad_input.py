@@ -118,3 +118,30 @@ def test_cell_sizes_that_make_no_sense_are_refused(job, capsys):
     for value in ("0", "-1", "nan"):
         assert main(["run", str(job), "--cell-mm", value]) == 2
         assert "--cell-mm" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "words"),
+    [
+        ('model = "hobbing_lathe"', 'model = "../models"', 3, ["unknown machine model", "hobbing_lathe"]),
+        ('clamping = "chuck"', 'clamping = "magnet"', 9, ["magnet", "arbor, chuck"]),
+        ('clamping = "chuck"', "stick_out_mm = 1.0", 9, ["reach into the chuck"]),
+        ("across_flats_mm = 17.0", "across_flats_mm = -1.0", 23, ["above 0"]),
+    ],
+)
+def test_check_and_run_refuse_the_same_jobs(job, capsys, old, new, line, words):
+    edit(job, old, new)
+    code, said, _ = run(job, capsys)
+    assert (code, main(["check", str(job)])) == (2, 2)
+    assert said == capsys.readouterr().err.strip()
+    assert f"job.toml:{line}" in said
+    for word in words:
+        assert word in said
+
+
+def test_what_the_controller_refuses_has_its_line_in_the_job(job, capsys):
+    edit(job, 'setup = "hobbing"', 'setup = "hobbing"\nsignals = { FOO = 1 }')
+    code, said, _ = run(job, capsys)
+    assert code == 2
+    assert "job.toml:5" in said
+    assert "NOZAGC" in said

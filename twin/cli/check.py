@@ -20,14 +20,14 @@ def check_command(options: argparse.Namespace) -> ExitCode:
     signals = {name: value != "0" for name, value in asked.items()}
     if target.is_dir() or target.suffix == ".toml":
         from twin.job import read_job  # noqa: PLC0415 - a bare program needs none of this
-        from twin.presets import cutters_of, offsets_of  # noqa: PLC0415
+        from twin.presets import cutters_of, settings_of  # noqa: PLC0415
 
         job = read_job(target)
         if options.setup and options.setup != job.machine.setup:
             raise InputError(f"--setup {options.setup}: the job says {job.machine.setup}")
-        parameters = delivered(job.machine.setup, {**job.machine.parameters, **overrides})
-        signals = {**{k: bool(v) for k, v in job.machine.signals.items()}, **signals}
-        program, offsets = load_program(job.program), offsets_of(job, cutters_of(job))
+        settings = settings_of(job, cutters_of(job), parameters=overrides, signals=signals)
+        parameters, offsets, signals = settings.parameters, settings.offsets, settings.signals
+        program = load_program(job.program)
     else:
         if not target.exists():
             raise InputError("there is no such file", place=Place(file=str(target)))

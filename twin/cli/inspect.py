@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,8 @@ from twin.inspection.result import Verdict
 from twin.inspection.sheet import to_json
 from twin.job import read_job
 from twin.summary import part_lines
+
+FORMATS = "STL, 3MF, GLB, PLY, OBJ"
 
 
 def inspect_command(options: argparse.Namespace) -> ExitCode:
@@ -38,24 +41,32 @@ def read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
     if not path.is_file():
         raise InputError("there is no such file", place=place)
     try:
-        mesh = trimesh.load_mesh(path, process=False)
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            mesh = trimesh.load_mesh(path, process=False)
     except Exception as cause:  # readers raise whatever they please on damaged files
         raise InputError(
-            f"not a readable mesh ({type(cause).__name__}: {cause})",
+            "not a readable mesh",
             place=place,
-            remedy="valid: STL, PLY, OBJ, GLB",
+            remedy=f"valid: {FORMATS}",
         ) from cause
     if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
-        raise InputError("the file holds no triangles", place=place, remedy="valid: STL, PLY, OBJ, GLB")
+        raise InputError("the file holds no triangles", place=place, remedy=f"valid: {FORMATS}")
     mesh.merge_vertices(merge_tex=True, merge_norm=True)
     scale = 1000.0 if path.suffix.lower() in (".glb", ".gltf") else 1.0
     return np.asarray(mesh.vertices, dtype=float) * scale, np.asarray(mesh.faces, dtype=np.int64)
 
 
 def _nominal(options: argparse.Namespace) -> Nominal | None:
+    gear = options.teeth is not None or options.module is not None
+    polygon = options.sides is not None or options.across_flats is not None
+    if gear + polygon + bool(options.job) > 1:
+        raise InputError("a nominal is named twice", remedy="one of --job, --teeth …, --sides …")
+    if options.accuracy_class is not None and not gear:
+        raise InputError("--class judges a nominal gear", remedy="add --teeth and --module")
     if options.job:
         return read_job(options.job).nominal
-    if options.teeth is not None or options.module is not None:
+    if gear:
         if options.teeth is None or options.module is None:
             raise InputError("a nominal gear needs --teeth and --module")
         return GearNominal(
@@ -66,7 +77,7 @@ def _nominal(options: argparse.Namespace) -> Nominal | None:
             normal_pressure_angle_deg=options.pressure_angle,
             accuracy_class=options.accuracy_class,
         )
-    if options.sides is not None or options.across_flats is not None:
+    if polygon:
         if options.sides is None or options.across_flats is None:
             raise InputError("a nominal polygon needs --sides and --across-flats")
         return PolygonNominal(number_of_sides=options.sides, across_flats_mm=options.across_flats)

@@ -1,7 +1,9 @@
 """Arguments in, exit code out. Commands import what they need when they run: `check` stays light."""
 
 import argparse
+import signal
 import sys
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,6 +13,9 @@ from twin.errors import ExitCode, HobtwinError
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command. Returns the exit code of the contract: 0 fine, 1 finding, 2 usage, 3 our fault."""
     options = _parser().parse_args(arguments)
+    if threading.current_thread() is threading.main_thread():
+        # a run that is told to stop cleans up after itself, as with Ctrl-C
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return int(options.command(options))
     except KeyboardInterrupt:
@@ -76,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
     check.set_defaults(command=_check)
 
     inspect = commands.add_parser("inspect", help="measure a mesh [mm]")
-    inspect.add_argument("mesh", type=Path, metavar="MESH", help="STL, PLY, OBJ or GLB")
+    inspect.add_argument("mesh", type=Path, metavar="MESH", help="STL, 3MF, GLB, PLY or OBJ")
     inspect.add_argument("--job", type=Path, metavar="JOB", help="take the nominal from a job")
     inspect.add_argument("--teeth", type=int)
     inspect.add_argument("--module", type=float, metavar="MM")

@@ -6,10 +6,11 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, Literal, NoReturn, TypeVar, get_args, get_origin, get_type_hints
 
 import msgspec
 
+import models
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
@@ -21,6 +22,7 @@ T = TypeVar("T")
 
 TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead}
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
+MODELS = Path(models.__file__).parent
 TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection")
 
 
@@ -51,6 +53,12 @@ def _syntax_place(file: Path, cause: tomllib.TOMLDecodeError) -> Place:
     return Place(file=str(file), line=int(at[1]), column=int(at[2])) if at else Place(file=str(file))
 
 
+def _choices(kind: type, path: tuple[str, ...]) -> str:
+    """What a field of a few fixed words accepts; empty for any other field."""
+    hint = get_type_hints(kind).get(path[0]) if path else None
+    return ", ".join(str(word) for word in get_args(hint)) if get_origin(hint) is Literal else ""
+
+
 class _Reader:
     """The tables of one job file, turned into dataclasses."""
 
@@ -75,6 +83,16 @@ class _Reader:
             nominal=self._nominal(work, tools),
             inspection=self._table(InspectionTable, ("inspection",)),
         )
+        model = job.machine.model
+        if not re.fullmatch(r"\w+", model) or not (MODELS / model / "machine.toml").is_file():
+            known = sorted(path.parent.name for path in MODELS.glob("*/machine.toml"))
+            self._fail(("machine", "model"), f"unknown machine model {model!r}", ", ".join(known))
+        if work.stick_out_mm is not None and work.stick_out_mm < work.length_mm:
+            self._fail(
+                ("work", "stick_out_mm"),
+                f"stick_out_mm {work.stick_out_mm:g}: work {work.length_mm:g} mm long would reach into the chuck",
+                f"at least {work.length_mm:g}",
+            )
         if work.bore_mm >= work.diameter_mm:
             self._fail(
                 ("work", "bore_mm"),
@@ -108,7 +126,9 @@ class _Reader:
         self._known(raw, ("file",), ("program",))
         name = raw.get("file")
         if not isinstance(name, str):
-            self._fail(("program",), "the job names no program", 'file = "program.nc" in [program]')
+            self._fail(
+                ("program", "file"), "the job names no program file", 'file = "program.nc" in [program]'
+            )
         path = self.file.parent / name
         if not path.is_file():
             self._fail(("program", "file"), f"there is no program {name!r} beside the job")
@@ -121,6 +141,8 @@ class _Reader:
         if isinstance(nominal, PolygonNominal):
             if nominal.number_of_sides < 3:
                 self._fail(("nominal", "number_of_sides"), "a polygon has at least 3 sides")
+            if nominal.across_flats_mm <= 0:
+                self._fail(("nominal", "across_flats_mm"), "across_flats_mm must be above 0")
             return nominal
         if abs(nominal.helix_angle_deg) >= 90 or nominal.number_of_teeth < 3 or nominal.normal_module_mm <= 0:
             self._fail(
@@ -166,7 +188,7 @@ class _Reader:
             text, _, at = str(cause).partition(" - at ")
             inner = tuple(re.findall(r"[A-Za-z_]\w*", at.strip("`$")))
             where = (*path, *inner)
-            self._fail(where, f"{'.'.join(where)}: {text}")
+            self._fail(where, f"{'.'.join(where)}: {text}", _choices(kind, inner))
         except HobtwinError as cause:
             self._fail(path, f"{'.'.join(path)}: {cause.text}", cause.remedy)
 
