@@ -90,7 +90,7 @@ class _Reader:
         if work.stick_out_mm is not None and work.stick_out_mm < work.length_mm:
             self._fail(
                 ("work", "stick_out_mm"),
-                f"stick_out_mm {work.stick_out_mm:g}: work {work.length_mm:g} mm long would reach into the chuck",
+                f"with stick_out_mm {work.stick_out_mm:g} the work would reach into the chuck",
                 f"at least {work.length_mm:g}",
             )
         if work.bore_mm >= work.diameter_mm:
