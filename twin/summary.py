@@ -146,8 +146,8 @@ def _job_rows(outcome: Outcome) -> list[Row]:
         rows.append(
             Row(
                 label="Check",
-                value=f"{result.checked} points of the cut surface against all passes: "
-                f"largest error {result.largest_error_um:.2g} µm",
+                value=f"{result.checked} vertices of the cut surface against all passes: largest error "
+                f"{result.largest_error_um:.2g} µm; as many facets: {result.facet_error_um:.2g} µm",
             )
         )
     remains = result.remains

@@ -17,15 +17,23 @@ from twin.cutting.motion import CutterMotion
 from twin.cutting.refine import refine
 from twin.cutting.stock import Blank, Remains, subtract
 from twin.cutting.sweep import Sweep
-from twin.errors import PartError
+from twin.errors import InputError, PartError
 
 Floats = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
 CELLS = 150_000
 """Surface cells aimed at where no cell size is asked for."""
-CHECKED = 250
-"""Vertices that every run holds against all passes, unculled."""
+CHECKED = 120
+"""Vertices, and as many middles of facets, that every run holds against all passes, unculled."""
+LARGEST_NODES = 150_000_000
+"""Grid nodes that fit the memory: 8 bytes each, and half as much again while they are made."""
+VERTEX_ERROR = 2e-3
+"""[mm] off the envelope from which a vertex is worth a note: an edge of the cut that a cell could not hold"""
+FACET_ERROR = 1e-2
+"""[mm] off the envelope from which the cells are too coarse for the part"""
+CRUMB = 1e-6
+"""[mm³] below which a severed piece is rounding"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +53,8 @@ class CutResult:
     """vertices of the cut surface held against all passes"""
     largest_error_um: float
     """largest distance of those from the envelope of all passes"""
+    facet_error_um: float
+    """the same for as many middles of facets: what the cells' size costs"""
     notes: tuple[str, ...]
 
 
@@ -79,29 +89,37 @@ def cut(
     notes = [*_rubbing(blank, tools)]
     if sweep.count == 0:
         return _uncut(blank, (*notes, "no edge ever swung past the blank: nothing was cut"))
+    nodes = math.prod(grid.node_shape)
+    if nodes > LARGEST_NODES:
+        coarser = cell * (nodes / LARGEST_NODES) ** (1 / 3)
+        raise InputError(
+            f"a cell of {cell:g} mm makes {nodes / 1e6:.0f} million grid nodes, {nodes * 12e-9:.1f} GB",
+            remedy=f"valid: --cell-mm {coarser:.2g} or more",
+        )
     progress("searching the cut surface", 0.1)
     leaves = refine(sweep, grid)
     progress("crossings", 0.5)
     depth = node_depths(sweep, grid, leaves)
     surface = None
-    errors = np.zeros(0)
+    errors = facets = np.zeros(0)
     if (depth > 0).any():
         if (depth[1] > 0).any() and low > 0.5 * blank.bore_mm and lowest <= 0.02 * blank.radius:
-            notes.append(f"the cut reaches the work axis; a core of {2 * grid.r[1]:.2f} mm is kept")
+            notes.append(f"the cut reaches the work axis; a core of {grid.r[0] + grid.r[1]:.2f} mm is kept")
         crossings = find_crossings(sweep, grid, leaves, depth)
         cell_low, case, leaf = leaf_cells(grid, leaves, depth)
         progress("meshing", 0.7)
         surface = contour(sweep, grid, Cells(cell_low, case, leaves.candidates.of(leaf)), crossings)
         progress("checking", 0.8)
-        errors = _check(sweep, surface, blank)
+        errors, facets = _check(sweep, surface, blank)
+        notes += _coarse(errors, facets)
     else:
         notes.append("the tool passed the blank without touching it: nothing was cut")
     progress("cutting the blank", 0.9)
     remains = subtract(blank, surface)
-    if remains.loose_volumes_mm3:
+    severed = [volume for volume in remains.loose_volumes_mm3 if volume > CRUMB]
+    if severed:
         notes.append(
-            f"{len(remains.loose_volumes_mm3)} severed piece(s), the largest of "
-            f"{remains.loose_volumes_mm3[0]:.3g} mm³, fell off the part"
+            f"{len(severed)} severed piece(s), the largest of {severed[0]:.3g} mm³, fell off the part"
         )
     progress("done", 1.0)
     return CutResult(
@@ -112,6 +130,7 @@ def cut(
         pairs=leaves.pairs,
         checked=len(errors),
         largest_error_um=float(errors.max(initial=0.0)) * 1e3,
+        facet_error_um=float(facets.max(initial=0.0)) * 1e3,
         notes=tuple(notes),
     )
 
@@ -137,6 +156,7 @@ def _uncut(blank: Blank, notes: tuple[str, ...]) -> CutResult:
         pairs=0,
         checked=0,
         largest_error_um=0.0,
+        facet_error_um=0.0,
         notes=notes,
     )
 
@@ -162,23 +182,40 @@ def _closest(cutter: Cutter, motion: CutterMotion) -> float:
     return max(float(distance.min()) - cutter.radius - offset, 0.0)
 
 
-def _check(sweep: Sweep, surface: Surface, blank: Blank) -> Floats:
-    """Distances [mm] of random vertices of the cut surface from the envelope of all passes, unculled.
+def _check(sweep: Sweep, surface: Surface, blank: Blank) -> tuple[Floats, Floats]:
+    """Distances [mm] from the envelope of all passes, unculled, of random vertices and middles of facets.
 
-    A vertex on an edge of the cut stands off by the shape of the edge; the field tells its distance all
-    the same. Vertices on the closing faces outside the blank are left out.
+    What lies on the closing faces outside the blank is left out.
     """
-    v = surface.vertices
+    rng = np.random.default_rng(0)
+    middles = surface.vertices[surface.faces].mean(axis=1)
+    return _off(sweep, surface.vertices, blank, rng), _off(sweep, middles, blank, rng)
+
+
+def _off(sweep: Sweep, points: Floats, blank: Blank, rng: np.random.Generator) -> Floats:
     low, high = blank.z_range
-    r = np.hypot(v[:, 0], v[:, 1])
-    inside = np.flatnonzero(
-        (r < blank.radius) & (r > 0.5 * blank.bore_mm) & (v[:, 2] > low) & (v[:, 2] < high)
-    )
-    if not len(inside):
-        return np.zeros(0)
-    chosen = np.random.default_rng(0).choice(inside, min(CHECKED, len(inside)), replace=False)
+    r = np.hypot(points[:, 0], points[:, 1])
+    inside = (r < blank.radius) & (r > 0.5 * blank.bore_mm) & (points[:, 2] > low) & (points[:, 2] < high)
+    rows = np.flatnonzero(inside)
+    chosen = rng.choice(rows, min(CHECKED, len(rows)), replace=False) if len(rows) else rows
     passes = np.arange(sweep.count)
-    rounds = [sweep.evaluate(np.broadcast_to(p, (len(passes), 3)), passes).depth.max() for p in v[chosen]]
-    if not np.isfinite(rounds).all():
+    depth = [sweep.evaluate(np.broadcast_to(p, (len(passes), 3)), passes).depth.max() for p in points[chosen]]
+    if not np.isfinite(depth).all():
         raise PartError("the cut surface has points that no pass can have made")
-    return np.abs(np.array(rounds))
+    return np.abs(np.array(depth))
+
+
+def _coarse(vertices: Floats, facets: Floats) -> list[str]:
+    """What the check has to say."""
+    notes: list[str] = []
+    if (off := vertices[vertices > VERTEX_ERROR]).size:
+        notes.append(
+            f"{off.size} of {vertices.size} checked points of the cut stand up to {off.max() * 1e3:.0f} µm "
+            "off it, at its edges; a smaller --cell-mm holds them better"
+        )
+    if (off := facets[facets > FACET_ERROR]).size:
+        notes.append(
+            f"between its vertices the mesh stands up to {off.max() * 1e3:.0f} µm off the cut "
+            f"({off.size} of {facets.size} checked facets); a smaller --cell-mm follows it better"
+        )
+    return notes

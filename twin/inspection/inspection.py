@@ -3,6 +3,7 @@
 from numpy.typing import ArrayLike
 
 from twin.errors import InputError, PartError
+from twin.inspection.bodies import separate_bodies
 from twin.inspection.gear import find_gear, measure_gear
 from twin.inspection.involute import geometry
 from twin.inspection.judge import FLANK_LIMIT, judge_gear, judge_polygon, name_of, unlike
@@ -28,6 +29,9 @@ def inspect(vertices: ArrayLike, faces: ArrayLike, nominal: Nominal | None = Non
     """
     _check_nominal(nominal)
     solid = check_solid(vertices, faces)
+    bodies = separate_bodies(solid)
+    if bodies > 1:
+        return _nothing(f"the mesh holds {bodies} separate bodies, a part is one", nominal)
     outline = recognise(solid)
     if outline.form is Form.GEAR and not isinstance(nominal, PolygonNominal):
         result = _inspect_gear(solid, outline, nominal)

@@ -35,6 +35,8 @@ FEWEST = 5
 """sections in a row that must be alike"""
 MOST_SIDES = 24
 """with more corners than this an outline is round, not a polygon"""
+NICK = 0.05
+"""crossings closer together than this part of a pitch belong to one flank: a nick where two cuts meet"""
 ROUND = 1e-3
 """an outline of less relative depth is round: the chords of a faceted circle"""
 
@@ -169,13 +171,31 @@ def _counts(sections: Segments, middles: Floats) -> Ints:
     around = np.bincount(sections.plane, weights=turn, minlength=len(middles)) > math.pi
     counts = np.zeros(len(middles), dtype=np.int64)
     for plane in np.flatnonzero(around):
-        rising = np.sort(crossings.angle[(crossings.plane == plane) & ~crossings.left])
+        here = crossings.plane == plane  # sorted by angle
+        rising = _without_nicks(crossings.angle[here], ~crossings.left[here])
         if len(rising) >= 2:
             pitch = 2 * math.pi / len(rising)
             steps = np.diff(rising, append=rising[0] + 2 * math.pi)
             if np.abs(steps - pitch).max() < 0.25 * pitch:
                 counts[plane] = len(rising)
     return counts
+
+
+def _without_nicks(angle: Floats, right: np.ndarray) -> Floats:
+    """Return the angles of the right flanks among crossings (n,) sorted by angle, each nicked flank once."""
+    if len(angle) < 4:
+        return angle[right]
+    near = np.mod(np.diff(angle, append=angle[0]), 2 * math.pi) < NICK * 4 * math.pi / len(angle)
+    if not near.any() or near.all():
+        return angle[right]
+    begin = int(np.flatnonzero(~near)[-1]) + 1  # a group does not go on over the end
+    order = np.roll(np.arange(len(angle)), -begin)
+    group = np.cumsum(~np.roll(near[order], 1))
+    # of an odd number of crossings one is the flank's, an even number is a flaw on one side of the circle
+    first = np.searchsorted(group, group)
+    size = np.bincount(group)[group]
+    kept = order[(size % 2 == 1) & (np.arange(len(order)) == first + size // 2 - (size // 2) % 2)]
+    return np.sort(angle[kept[right[kept]]])
 
 
 def phase_sums(crossings: Crossings, count: int, place: Ints, places: int) -> tuple[Complexes, Complexes]:
@@ -233,7 +253,7 @@ def _twist(solid: Solid, count: int, low: float, high: float, radius: float) -> 
     """Return twist [rad/mm] and a tooth centre's phase [rad] at mid-height, from sections close together."""
     pitch = 2 * math.pi * radius / count
     # below 45° a quarter pitch of height turns the teeth by less than half a pitch: no ambiguity
-    planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 33, 2000))
+    planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 401, 2000))
     heights = _midpoints(low, high, planes)
     segments = plane_segments(solid, heights, faces=faces_at_radius(solid, radius))
     crossings = circle_crossings(segments, np.array([radius]))

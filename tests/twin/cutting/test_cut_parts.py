@@ -9,7 +9,7 @@ from rays import deepest
 
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
-from twin.cutting.cut import cut
+from twin.cutting.cut import CHECKED, cut
 from twin.cutting.field import DepthField
 from twin.cutting.stock import Blank
 from twin.errors import PartError
@@ -65,8 +65,9 @@ def test_every_vertex_lies_on_blank_or_envelope(gear, synthetic):
     cutter, motion = hobbing(synthetic)
     depth, _ = deepest(DepthField(cutter, motion, TIP, (-4.0, 0.0)), v[chosen])
     assert np.abs(depth).max() < 1e-4
-    assert gear.checked == 250
+    assert gear.checked == CHECKED
     assert gear.largest_error_um < 0.1
+    assert 0 < gear.facet_error_um < 100
 
 
 def test_volume_is_that_of_the_points_no_pass_removes(gear, synthetic):
