@@ -1,12 +1,12 @@
 """Signs at the grid's nodes and exact crossings of the cut surface with the grid's edges."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.grid import Grid, cartesian
-from twin.cutting.pairs import Candidates
 from twin.cutting.refine import LEAF, Leaves
 from twin.cutting.sweep import Sweep
 from twin.cutting.topology import CORNERS
@@ -49,8 +49,8 @@ def node_depths(sweep: Sweep, grid: Grid, leaves: Leaves) -> Floats:
             k = np.minimum(k, grid.node_shape[2] - 1)
             flat[grid.node_id(i[:, :, None, None], j[:, None, :, None], k[:, None, None, :])] = 1.0
     node, block = _owned(leaves)
-    lists = leaves.candidates.of(block)
-    value, _, _ = sweep.deepest(grid.points(node[:, 0], node[:, 1] % grid.sectors, node[:, 2]), lists)
+    point = grid.points(node[:, 0], node[:, 1] % grid.sectors, node[:, 2])
+    value, _ = sweep.deepest(point, block, leaves.tangents, sign=True)
     ids = grid.node_id(*node.T)
     # a node of a neighbouring block that is removed whole is known already
     flat[ids] = np.where(flat[ids] == 1.0, 1.0, np.maximum(value, -1.0))
@@ -101,14 +101,18 @@ def find_crossings(sweep: Sweep, grid: Grid, leaves: Leaves, depth: Floats) -> C
     order = np.argsort(key)
     key, owner, axis, there = key[order], owner[order], axis[order], there[order]
     edge = _Edges(grid, node[owner], axis)
-    lists = leaves.candidates.of(block[owner])
     rising = here[owner] > 0
     closing = _closing(grid, node[owner], axis)
     t = np.full(len(key), 0.5)
     point, normal = edge.at(np.arange(len(key)), t)
     normal *= np.where(rising, 1.0, -1.0)[:, None]
     cut = np.flatnonzero(~closing)
-    point[cut], normal[cut] = _solve(sweep, edge, cut, (here[owner[cut]], there[cut]), lists.of(cut))
+    leaf = block[owner[cut]]
+
+    def field(points: Floats, rows: Ints) -> tuple[Floats, Floats]:
+        return sweep.deepest(points, leaf[rows], leaves.tangents, gradient=True)
+
+    point[cut], normal[cut] = _solve(field, edge, cut, (here[owner[cut]], there[cut]))
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     return Crossings(key, point, normal, rising)
 
@@ -152,9 +156,15 @@ class _Edges:
 
 
 def _solve(
-    sweep: Sweep, edge: _Edges, rows: Ints, ends: tuple[Floats, Floats], lists: Candidates
+    field: Callable[[Floats, Ints], tuple[Floats, Floats]],
+    edge: _Edges,
+    rows: Ints,
+    ends: tuple[Floats, Floats],
 ) -> tuple[Floats, Floats]:
-    """Points and normals of some edges, by Newton's method kept between a removed and a kept point."""
+    """Points and normals of some edges, by Newton's method kept between a removed and a kept point.
+
+    `field` tells depth and gradient at points, each on the edge rows[i] for one i.
+    """
     here, there = ends
     n = len(here)
     rising = here > 0
@@ -168,7 +178,7 @@ def _solve(
     for _ in range(ROUNDS):
         guess = t[left]
         point, along = edge.at(rows[left], guess)
-        value, _, slope = sweep.deepest(point, lists.of(left), gradient=True)
+        value, slope = field(point, left)
         normal[left] = -slope
         short = (value > 0) == rising[left]
         low[left] = np.where(short, guess, low[left])

@@ -108,7 +108,7 @@ def cut(
         crossings = find_crossings(sweep, grid, leaves, depth)
         cell_low, case, leaf = leaf_cells(grid, leaves, depth)
         progress("meshing", 0.7)
-        surface = contour(sweep, grid, Cells(cell_low, case, leaves.candidates.of(leaf)), crossings)
+        surface = contour(sweep, grid, Cells(cell_low, case, leaf, leaves.tangents), crossings)
         progress("checking", 0.8)
         errors, facets = _check(sweep, surface, blank)
         notes += _coarse(errors, facets)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from twin.cutting.crossings import Crossings, edge_key
 from twin.cutting.grid import Grid
-from twin.cutting.pairs import Candidates
+from twin.cutting.local import Tangents
 from twin.cutting.sweep import Sweep
 from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS, edge_at
 
@@ -44,8 +44,9 @@ class Cells:
     """(n, 3) low corner"""
     case: Ints
     """(n,) corner signs as bits"""
-    candidates: Candidates
-    """of each cell"""
+    leaf: Ints
+    """(n,) row of its leaf in `tangents`"""
+    tangents: Tangents
 
 
 def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings) -> Surface:
@@ -54,8 +55,8 @@ def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings) -> Sur
     vertices, normals, sharp = _fit(grid, cells, crossings, first)
     cell = np.repeat(np.arange(len(cells.case)), SHEETS[cells.case])
     smooth = np.flatnonzero(~sharp)
-    moved = _onto_surface(sweep, vertices[smooth], cells.candidates.of(cell[smooth]), min(grid.cell_mm))
-    vertices[smooth] = moved
+    leaf = cells.leaf[cell[smooth]]
+    vertices[smooth] = _onto_surface(sweep, vertices[smooth], leaf, cells.tangents, min(grid.cell_mm))
     quads = _quads(grid, cells, crossings, first)
     return Surface(vertices, _triangles(vertices, normals, quads))
 
@@ -123,11 +124,11 @@ def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.b
     return own | (near & (ids[at] != mine))
 
 
-def _onto_surface(sweep: Sweep, points: Floats, lists: Candidates, cell: float) -> Floats:
+def _onto_surface(sweep: Sweep, points: Floats, leaf: Ints, tangents: Tangents, cell: float) -> Floats:
     """Two Newton steps towards the field's zero, none longer than half a cell."""
     points = points.copy()
     for _ in range(2):
-        value, _, slope = sweep.deepest(points, lists, gradient=True)
+        value, slope = sweep.deepest(points, leaf, tangents, gradient=True)
         square = np.einsum("nx,nx->n", slope, slope)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = -slope * (value / square)[:, None]

@@ -16,6 +16,8 @@ T = TypeVar("T")
 
 BATCH = 1 << 13
 """Pairs in one batch: every intermediate array stays under the 128 KiB that malloc keeps at hand."""
+LISTED = 1 << 15
+"""Pairs in one batch where only a few of them are evaluated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +40,17 @@ class Candidates:
 
     def of(self, items: Ints) -> "Candidates":
         """The lists of some items, in their order; an item may come more than once."""
+        start = np.concatenate([[0], np.cumsum(np.diff(self.start)[items])])
+        return Candidates(start, self.passes[self.pairs(items)])
+
+    def pairs(self, items: Ints) -> Ints:
+        """Where the pairs of some items stand in `passes`, in the items' order."""
         length = np.diff(self.start)[items]
-        start = np.concatenate([[0], np.cumsum(length)])
-        inside = np.arange(start[-1]) - np.repeat(start[:-1], length)
-        return Candidates(start, self.passes[np.repeat(self.start[items], length) + inside])
+        end = np.cumsum(length)
+        # self.start of the item, plus the position in its list
+        pairs = np.repeat(self.start[items] - end + length, length)
+        pairs += np.arange(len(pairs))
+        return pairs
 
     def where(self, keep: NDArray[np.bool_]) -> "Candidates":
         """The lists without the pairs that are not kept (m,)."""
@@ -57,9 +66,9 @@ def join(parts: list[Candidates]) -> Candidates:
     return Candidates(np.concatenate([[0], np.cumsum(lengths)]), np.concatenate([p.passes for p in parts]))
 
 
-def batches(start: Ints) -> Iterator[slice]:
-    """Slices of items with about BATCH pairs each."""
-    cut = np.searchsorted(start, np.arange(BATCH, start[-1] + BATCH, BATCH))
+def batches(start: Ints, size: int = BATCH) -> Iterator[slice]:
+    """Slices of items with about `size` pairs each."""
+    cut = np.searchsorted(start, np.arange(size, start[-1] + size, size))
     low = 0
     for high in np.unique(np.minimum(cut, len(start) - 1)):
         if high > low:

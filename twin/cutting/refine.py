@@ -1,19 +1,23 @@
 """Where the cut surface runs, and which passes can make it there.
 
-Blocks of the grid are halved from coarse to fine. At each block's middle every candidate pass is evaluated,
-and the deepest one at the block's corners too. A tooth is convex, so the depth of a pass is concave in its
+Blocks of the grid are halved from coarse to fine. A tooth is convex, so the depth of a pass is concave in its
 rake plane: its tangent bounds it from above, its corner values from below (`DepthField.bound` adds what the
-map to the rake plane bends). That decides: a block that one pass removes whole, a block that no pass touches,
-or a block to halve, with the passes that the deepest one does not dominate in all of it.
+map to the rake plane bends). One pass, the block's judge, is evaluated at the corners. The others are
+held against it by the tangents that the parent block had, which hold in its children too; what then has a
+chance is evaluated at the block's own middle and held against it once more. That decides: a block that the
+judge removes whole, a block that no pass touches, or a block to halve, with the passes that can be the
+deepest in it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.grid import BLOCK, Grid
-from twin.cutting.pairs import Candidates, batches, in_parallel, join, leaders
+from twin.cutting.local import ROUNDING, Tangents, can_matter, joined, without_passes
+from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, leaders
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -22,6 +26,7 @@ Bools = NDArray[np.bool_]
 
 LEAF = 2
 """Cells along the edge of the finest block."""
+OCTANTS = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +35,24 @@ class Leaves:
 
     low: Ints
     """(n, 3) lowest cell of each block"""
-    candidates: Candidates
-    """of each block, valid in all of it, edges included"""
+    tangents: Tangents
+    """of the passes of each block, its edges included"""
     removed: list[tuple[Ints, int]]
     """(low (m, 3), size) of the blocks that are cut away whole"""
+    pairs: int
+    """pairs of block and pass that were evaluated"""
+
+
+@dataclass(frozen=True, slots=True)
+class Culled:
+    """What became of some blocks."""
+
+    whole: Bools
+    """(n,) which of them are cut away whole"""
+    alive: Ints
+    """(a,) which of them the surface may pass"""
+    tangents: Tangents
+    """of the passes that can matter, for each of `alive`"""
     pairs: int
     """pairs of block and pass that were evaluated"""
 
@@ -43,26 +62,42 @@ def refine(sweep: Sweep, grid: Grid) -> Leaves:
     nr, nt, nz = grid.cells
     axes = (np.arange(0, nr, BLOCK), np.arange(0, nt, BLOCK), np.arange(0, nz, BLOCK))
     low = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    middle, corners = grid.hulls(low, BLOCK)
-    lists = sweep.near(middle, np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1))
     removed: list[tuple[Ints, int]] = []
-    pairs = 0
+    closing = [np.zeros((0, 3), dtype=np.int64)]
     size = BLOCK
+    middle, corners = grid.hulls(low, size)
+    done = first_cull(sweep, middle, corners)
+    pairs = done.pairs
     while True:
-        pairs += len(lists.passes)
-        whole, lists = _cull(sweep, *grid.hulls(low, size), lists)
-        whole &= ~_outermost(grid, low, size)  # the closing faces of the removed solid run there
-        removed.append((low[whole], size))
-        alive = np.flatnonzero(~whole & (np.diff(lists.start) > 0))
-        low, lists = low[alive], lists.of(alive)
+        removed.append((low[done.whole], size))
+        closing.append(_closing(grid, low[done.whole], size))
+        low, tangents = low[done.alive], done.tangents
         if size == LEAF:
-            return Leaves(low, lists, removed, pairs)
+            break
         size //= 2
-        steps = size * np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
         parent = np.repeat(np.arange(len(low)), 8)
-        low = (low[:, None, :] + steps).reshape(-1, 3)
+        low = (low[:, None, :] + size * OCTANTS).reshape(-1, 3)
         inside = (low[:, 0] < nr) & (low[:, 2] < nz)
-        low, lists = low[inside], lists.of(parent[inside])
+        low = low[inside]
+        done = cull(sweep, *grid.hulls(low, size), parent[inside], tangents)
+        pairs += done.pairs
+    shut = np.concatenate(closing)
+    tangents = joined([tangents, without_passes(grid.hulls(shut, LEAF)[0])])
+    return Leaves(np.concatenate([low, shut]), tangents, removed, pairs)
+
+
+def _closing(grid: Grid, low: Ints, size: int) -> Ints:
+    """The leaves (m, 3) of removed blocks that the closing faces of the removed solid run through.
+
+    No pass makes those faces: the leaves need none.
+    """
+    nr, _, nz = grid.cells
+    low = low[_outermost(grid, low, size)]
+    while size > LEAF:
+        size //= 2
+        low = (low[:, None, :] + size * OCTANTS).reshape(-1, 3)
+        low = low[(low[:, 0] < nr) & (low[:, 2] < nz) & _outermost(grid, low, size)]
+    return low
 
 
 def _outermost(grid: Grid, low: Ints, size: int) -> Bools:
@@ -72,47 +107,102 @@ def _outermost(grid: Grid, low: Ints, size: int) -> Bools:
     return (i == 0) | (i + size >= nr) | (k == 0) | (k + size >= nz)
 
 
-def _cull(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates) -> tuple[Bools, Candidates]:
-    """Which blocks are removed whole, and the lists without the passes that cannot matter."""
+def first_cull(sweep: Sweep, middle: Floats, corners: Floats) -> Culled:
+    """As `cull`, for blocks that have no parents."""
+    lists = sweep.near(middle, _radius(middle, corners))
     some = np.flatnonzero(np.diff(lists.start))
-    filled = lists.of(some)
-    # one contiguous row per corner and coordinate: the loops below run along the pairs
-    spokes = np.ascontiguousarray((corners - middle[:, None]).transpose(1, 2, 0)[:, :, some])
-    radius = np.sqrt((spokes**2).sum(axis=1).max(axis=0))
+    lists = lists.of(some)
 
-    def work(part: slice) -> tuple[Bools, Candidates]:
-        start = filled.start[part.start : part.stop + 1]
-        index = filled.passes[start[0] : start[-1]]
-        start = start - start[0]
+    def work(part: slice) -> Culled:
         items = some[part]
-        length = np.diff(start)
-        where = np.repeat(items, length)
-        meeting = sweep.evaluate(middle[where], index, gradient=True)
-        change, bent, excess = sweep.bound(meeting, index, np.repeat(radius[part], length))
-        _, best = leaders(meeting.depth, start)
-        below = sweep.evaluate(corners[items].reshape(-1, 3), np.repeat(index[best], 8)).depth
-        below = below.reshape(-1, 8).T - 2.0 * bent[best]
-        # where another tooth or the land may take over, the corners prove nothing
-        mixed = excess[best] > 0
-        below[:, mixed] = (meeting.depth - change)[best[mixed]]
-        highest = np.full(len(index), -np.inf)
-        lead = np.full(len(index), -np.inf)
-        slope = np.ascontiguousarray(meeting.gradient.T)
-        for spoke, floor in zip(spokes[:, :, part], below, strict=True):
-            tangent = meeting.depth + (np.repeat(spoke, length, axis=1) * slope).sum(axis=0)
-            np.maximum(highest, tangent, out=highest)
-            np.maximum(lead, tangent - np.repeat(floor, length), out=lead)
-        over = bent + excess
-        touches = np.minimum(highest + over, meeting.depth + change) > 0
-        keep = lead + over >= 0
-        keep[best] = True
-        return below.min(axis=0) > 0, Candidates(start, index).where(keep & touches)
+        own = lists.of(np.arange(part.start, part.stop))
+        depth = sweep.evaluate(middle[items[own.owner()]], own.passes).depth
+        judge = own.passes[leaders(depth, own.start)[1]]
+        floors = _floors(sweep, middle[items], corners[items], judge)
+        return _judged(sweep, middle[items], corners[items], own, floors)
 
-    done = in_parallel(work, batches(filled.start))
-    whole = np.zeros(len(middle), dtype=bool)
-    length = np.zeros(len(middle), dtype=np.int64)
-    short = join([c for _, c in done])
-    if done:
-        whole[some] = np.concatenate([w for w, _ in done])
-        length[some] = np.diff(short.start)
-    return whole, Candidates(np.concatenate([[0], np.cumsum(length)]), short.passes)
+    return _gathered(len(middle), some, lists.start, work)
+
+
+def cull(sweep: Sweep, middle: Floats, corners: Floats, parent: Ints, tangents: Tangents) -> Culled:
+    """Cull the passes of blocks with these middles (n, 3) and corners of their hulls (n, 8, 3).
+
+    `tangents` are those of their parent blocks, `parent` (n,) tells which.
+    """
+    length = np.diff(tangents.lists.start)[parent]
+    some = np.flatnonzero(length)
+
+    def work(part: slice) -> Culled:
+        items = some[part]
+        above = tangents.of(parent[items])
+        owner = above.lists.owner()
+        way = middle[items] - above.middle
+        height = above.plane[0] + (above.plane[1:] * way.T[:, owner]).sum(axis=0)
+        judge = above.lists.passes[leaders(height, above.lists.start)[1]]
+        floors = _floors(sweep, middle[items], corners[items], judge)
+        outside = _radius(above.middle, corners[items]) > above.radius * (1.0 + ROUNDING)
+        spokes = _spokes(above.middle, corners[items])
+        keep = can_matter(above.plane, above.over, owner, spokes, floors) | outside[owner]
+        return _judged(sweep, middle[items], corners[items], above.lists.where(keep), floors)
+
+    return _gathered(len(middle), some, np.concatenate([[0], np.cumsum(length[some])]), work)
+
+
+def _floors(sweep: Sweep, middle: Floats, corners: Floats, judge: Ints) -> Floats:
+    """Lower bounds (8, n) of the field from one pass for each block, at its corners.
+
+    At any convex combination of the corners the field is at least the same combination of these.
+    """
+    meeting = sweep.evaluate(middle, judge)
+    change, bent, excess = sweep.bound(meeting, judge, _radius(middle, corners))
+    depth = sweep.evaluate(corners.reshape(-1, 3), np.repeat(judge, 8)).depth
+    floors = depth.reshape(-1, 8).T - 2.0 * bent
+    # where another tooth or the land may take over, the corners prove nothing
+    mixed = excess > 0
+    floors[:, mixed] = (meeting.depth - change)[mixed]
+    return floors
+
+
+def _judged(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates, floors: Floats) -> Culled:
+    """Cull by the tangents at the blocks' own middles."""
+    whole = floors.min(axis=0) > 0
+    rest = np.flatnonzero(~whole & (np.diff(lists.start) > 0))
+    middle, corners, lists = middle[rest], corners[rest], lists.of(rest)
+    radius = _radius(middle, corners)
+    owner = lists.owner()
+    meeting = sweep.evaluate(middle[owner], lists.passes, gradient=True)
+    change, bent, excess = sweep.bound(meeting, lists.passes, radius[owner])
+    plane = np.vstack([meeting.depth, meeting.gradient.T])
+    over = bent + excess
+    keep = can_matter(plane, over, owner, _spokes(middle, corners), floors[:, rest])
+    keep &= meeting.depth + change > 0
+    tangents = Tangents(lists.where(keep), middle, radius, plane[:, keep], over[keep])
+    some = np.flatnonzero(np.diff(tangents.lists.start))
+    return Culled(whole, rest[some], tangents.of(some), len(owner))
+
+
+def _gathered(count: int, items: Ints, start: Ints, work: Callable[[slice], Culled]) -> Culled:
+    """`work` on slices of some of `count` blocks, whose lists of pairs begin at `start`."""
+    slices = list(batches(start, LISTED))
+    done = in_parallel(work, iter(slices))
+    whole = np.zeros(count, dtype=bool)
+    alive = [np.zeros(0, dtype=np.int64)]
+    for part, culled in zip(slices, done, strict=True):
+        whole[items[part]] = culled.whole
+        alive.append(items[part][culled.alive])
+    return Culled(
+        whole,
+        np.concatenate(alive),
+        joined([without_passes(np.zeros((0, 3))), *(culled.tangents for culled in done)]),
+        sum(culled.pairs for culled in done),
+    )
+
+
+def _radius(middle: Floats, corners: Floats) -> Floats:
+    """(n,) distance of the farthest corner."""
+    return np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
+
+
+def _spokes(middle: Floats, corners: Floats) -> Floats:
+    """(8, 3, n) from the middles to the corners, one contiguous row per corner and coordinate."""
+    return np.ascontiguousarray((corners - middle[:, None]).transpose(1, 2, 0))

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.field import DepthField, Meeting
-from twin.cutting.pairs import Candidates, batches, in_parallel, join, leaders
+from twin.cutting.local import ROUNDING, Tangents
+from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join, leaders
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -66,31 +67,60 @@ class Sweep:
         return join([Candidates(np.array([0, len(row)]), row) for row in (np.concatenate(f) for f in found)])
 
     def deepest(
-        self, points: Floats, candidates: Candidates, *, gradient: bool = False
-    ) -> tuple[Floats, Ints, Floats]:
-        """Largest depth over each point's candidates, the pass that has it, and its gradient there.
+        self, points: Floats, block: Ints, tangents: Tangents, *, gradient: bool = False, sign: bool = False
+    ) -> tuple[Floats, Floats]:
+        """Largest depth (n,) over the passes of each point's `block`, and its gradient.
 
-        A point without candidates has depth −inf and pass −1.
+        The pass whose tangent stands highest is evaluated, and then those whose upper bound is above it.
+        Where only the `sign` is asked for, it comes with a depth that is about right. A point without
+        passes has depth −inf.
         """
         depth = np.full(len(points), -np.inf)
-        winner = np.full(len(points), -1, dtype=np.int64)
         slope = np.zeros((len(points) if gradient else 0, 3))
-        some = np.flatnonzero(np.diff(candidates.start))
-        lists = candidates.of(some) if len(some) < len(points) else candidates
+        lists = tangents.lists
+        length = np.diff(lists.start)[block]
+        some = np.flatnonzero(length)
 
         def work(part: slice) -> None:
-            start = lists.start[part.start : part.stop + 1]
-            index = lists.passes[start[0] : start[-1]]
             items = some[part]
-            where = np.repeat(items, np.diff(start))
-            meeting = self.evaluate(points[where], index, gradient=gradient)
-            depth[items], first = leaders(meeting.depth, start - start[0])
-            winner[items] = index[first]
+            own = block[items]
+            count = length[items]
+            pairs = lists.pairs(own)
+            owner = np.repeat(np.arange(len(items)), count)
+            way = points[items] - tangents.middle[own]
+            level, over = tangents.plane.take(pairs, axis=1), tangents.over.take(pairs)
+            height = level[0]
+            for x in range(3):
+                height += level[1 + x] * way[:, x].take(owner)
+            _, first = leaders(height, np.concatenate([[0], np.cumsum(count)]))
+            upper = height + over
+            out = np.einsum("nx,nx->n", way, way) > (tangents.radius[own] * (1.0 + ROUNDING)) ** 2
+            if out.any():
+                upper[out[owner]] = np.inf
+            best = self.evaluate(points[items], lists.passes[pairs[first]], gradient=gradient)
+            floor = best.depth
             if gradient:
-                slope[items] = meeting.gradient[first]
+                slope[items] = best.gradient
+            rivals = upper > floor[owner]
+            rivals[first] = False
+            if sign:
+                rivals &= (floor <= 0)[owner]
+                rivals &= upper > 0
+            rivals = np.flatnonzero(rivals)
+            if len(rivals):
+                who = owner[rivals]
+                other = self.evaluate(points[items[who]], lists.passes[pairs[rivals]], gradient=gradient)
+                start = np.concatenate([[0], np.flatnonzero(np.diff(who)) + 1, [len(who)]])
+                deepest, at = leaders(other.depth, start)
+                who = who[start[:-1]]
+                higher = deepest > floor[who]
+                floor[who[higher]] = deepest[higher]
+                if gradient:
+                    slope[items[who[higher]]] = other.gradient[at[higher]]
+            depth[items] = floor
 
-        in_parallel(work, batches(lists.start))
-        return depth, winner, slope
+        in_parallel(work, batches(np.concatenate([[0], np.cumsum(length[some])]), LISTED))
+        return depth, slope
 
     def _of(self, n: int, index: Ints) -> NDArray[np.bool_]:
         return (index >= self._first[n]) & (index < self._first[n + 1])

@@ -13,7 +13,7 @@ from twin.cutting.engagement import StockCylinder, scraped
 from twin.cutting.field import DepthField
 from twin.cutting.motion import RigidTransform
 from twin.cutting.passes import find_passes
-from twin.cutting.refine import _cull
+from twin.cutting.refine import cull, first_cull
 from twin.cutting.sweep import Sweep
 from twin.errors import PartError
 
@@ -38,25 +38,46 @@ def test_culling_keeps_the_deepest_pass(cut, seed):
     for start in cut.points(3, seed):
         middle = start
         half = cut.feature * rng.uniform(0.2, 1.0, 3)
+        tangents = None
         # a box of any attitude, then ever smaller ones inside it
         while half.max() > 3e-3 * cut.feature:
             axes = np.linalg.qr(rng.standard_normal((3, 3)))[0]
             corners = middle + (SIGNS * half) @ axes
-            lists = sweep.near(middle[None], np.array([np.linalg.norm(half)]))
-            whole, left = _cull(sweep, middle[None], corners[None], lists)
+            if tangents is None:
+                done = first_cull(sweep, middle[None], corners[None])
+            else:
+                done = cull(sweep, middle[None], corners[None], np.zeros(1, dtype=int), tangents)
             # the corners of the box and points of its inside and faces
             inside = np.clip(rng.uniform(-1.4, 1.4, (16, 3)), -1.0, 1.0)
             points = middle + (np.vstack([SIGNS, inside]) * half) @ axes
             depth = all_depths(field, points)
             deepest = depth.max(axis=1)
-            survivors = depth[:, left.passes].max(axis=1, initial=-np.inf)
             cut_away = deepest > 0
-            if whole[0]:
+            if done.whole[0]:
                 assert cut_away.all()
-            if left.count and len(left.passes):
-                assert (survivors[cut_away] == deepest[cut_away]).all()
-            else:
+                break
+            if not len(done.alive):
                 assert not cut_away.any()
+                break
+            tangents = done.tangents
+            left = tangents.lists.passes
+            survivors = depth[:, left].max(axis=1)
+            assert (survivors[cut_away] == deepest[cut_away]).all()
+            # the tangents bound their passes from above in the whole ball, and tell the deepest
+            ball = rng.standard_normal((16, 3))
+            ball *= rng.uniform(0.0, tangents.radius) / np.linalg.norm(ball, axis=1, keepdims=True)
+            level, slope = tangents.plane[0], tangents.plane[1:]
+            bound = level + ball @ slope + tangents.over
+            assert (all_depths(field, middle + ball)[:, left] <= bound + 1e-7).all()
+            home = np.zeros(len(points), dtype=int)
+            value, gradient = sweep.deepest(points, home, tangents, gradient=True)
+            assert value == pytest.approx(survivors, abs=1e-7)
+            best = left[depth[:, left].argmax(axis=1)]
+            single = (depth[:, left] > survivors[:, None] - 1e-6).sum(axis=1) == 1
+            expected = field.evaluate(points, best, gradient=True).gradient
+            assert gradient[single] == pytest.approx(expected[single], abs=1e-6)
+            signs, _ = sweep.deepest(points, home, tangents, sign=True)
+            assert ((signs > 0) == (survivors > 0))[np.abs(survivors) > 1e-7].all()
             middle, half = points[rng.integers(8, len(points))], half / 3.0
 
 

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from twin.cutting.crossings import Crossings, edge_key, leaf_cells
 from twin.cutting.dual import Cells, _quads
 from twin.cutting.grid import Grid
-from twin.cutting.pairs import Candidates
+from twin.cutting.local import without_passes
 from twin.cutting.refine import LEAF, Leaves
 from twin.cutting.stock import solid
 from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS
@@ -61,7 +61,7 @@ def mesh_of(removed):
     low = np.stack(np.meshgrid(*(np.arange(0, n, LEAF) for n in grid.cells), indexing="ij"), axis=-1).reshape(
         -1, 3
     )
-    leaves = Leaves(low, Candidates(np.zeros(len(low) + 1, dtype=int), np.zeros(0, dtype=int)), [], 0)
+    leaves = Leaves(low, without_passes(np.zeros((len(low), 3))), [], 0)
     cell, case, leaf = leaf_cells(grid, leaves, np.where(removed, 1.0, -1.0))
     keys, rising = [], []
     for axis in range(3):
@@ -74,7 +74,7 @@ def mesh_of(removed):
     nothing = np.zeros((len(key), 3))
     crossings = Crossings(key[order], nothing, nothing, np.concatenate(rising)[order])
     first = np.concatenate([[0], np.cumsum(SHEETS[case])])
-    quads = _quads(grid, Cells(cell, case, leaves.candidates.of(leaf)), crossings, first)
+    quads = _quads(grid, Cells(cell, case, leaf, leaves.tangents), crossings, first)
     middle = np.repeat(cell, SHEETS[case], axis=0) + 0.5
     angle = grid.angle(middle[:, 1])
     r = 10.0 + middle[:, 0]
