@@ -61,6 +61,14 @@ class ToothProfile:
         g_x *= np.where(local < 0, -1.0, 1.0)
         return depth, g_x, g_y
 
+    def tooth(self, s: Floats) -> Floats:
+        """Axial position of the nearest tooth's middle."""
+        return s - self.fold(s)
+
+    def depth_in(self, tooth: Floats, s: Floats, rho: Floats) -> Floats:
+        """Signed depth in the tooth at `tooth` alone: a concave function, nowhere above `depth`."""
+        return self._tooth(np.abs(s - tooth), rho)[0]
+
     def takeover(self, s: Floats, rho: Floats, reach: Floats) -> Floats:
         """Bound on how far `depth` rises above its own tangent within `reach` of a point, in the rake plane.
 
@@ -69,6 +77,19 @@ class ToothProfile:
         """
         x = np.abs(self.fold(s))
         own, g_x, g_y = self._tooth(x, rho)
+        land = self.root - rho
+        # depths have no slope above 1, and the next tooth is deeper only beyond the middle of the gap
+        close = (own - land < 2.0 * reach) | (x + reach > 0.5 * self.pitch)
+        rows = np.flatnonzero(close)
+        excess = np.zeros(len(s))
+        excess[rows] = self._taken_over(x[rows], rho[rows], reach[rows], (own[rows], g_x[rows], g_y[rows]))
+        return excess
+
+    def _taken_over(
+        self, x: Floats, rho: Floats, reach: Floats, tooth: tuple[Floats, Floats, Floats]
+    ) -> Floats:
+        """`takeover` at `x` >= 0 from the nearest tooth's middle, given its depth and derivatives there."""
+        own, g_x, g_y = tooth
         land = self.root - rho
         deepest, d_x, d_y = np.maximum(own, land), g_x, g_y
         below = land > own

@@ -7,13 +7,13 @@ distance to the cut surface, but for the slow motion of the stock in the rake pl
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
 from twin.cutting.engagement import inner_radius
+from twin.cutting.meeting import Meeting, State
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passes import Passes, find_passes
 
@@ -33,43 +33,6 @@ WIDEST = 0.5
 """[rad] at which the distance from the end of a sweep stops to count"""
 
 
-@dataclass(frozen=True, slots=True)
-class Meeting:
-    """Where and how pairs of point and pass meet; arrays over pairs."""
-
-    depth: Floats
-    """(m,) [mm] positive = removed by this pass"""
-    gradient: Floats
-    """(m, 3) of the depth in the part frame; (0, 3) unless asked for"""
-    s: Floats
-    """(m,) axial position against the edge's outline [mm]"""
-    rho: Floats
-    """(m,) distance from the tool axis [mm]"""
-    instant: Floats
-    """(m,) sample (fractional) of the motion at which they meet"""
-
-
-@dataclass(frozen=True, slots=True)
-class _State:
-    """Points seen from the tool at given instants."""
-
-    cos: Floats
-    """of the work angle"""
-    sin: Floats
-    side: Floats
-    """(2, m) position across the tool axis, along basis 0 and 1"""
-    rho: Floats
-    s: Floats
-    rho_rate: Floats
-    """per sample, like the following"""
-    s_rate: Floats
-    lag: Floats
-    """[rad] edge angle minus point angle"""
-    lag_rate: Floats
-    tool_angle: Floats
-    tool_rate: Floats
-
-
 class DepthField:
     """The field of all passes of one tool."""
 
@@ -82,7 +45,10 @@ class DepthField:
         self._basis = motion.basis
         self._mount = motion.mount
         rows = np.column_stack([motion.work_angle, motion.tool_angle, motion.centre]).T
-        self._table = np.ascontiguousarray(np.vstack([rows[:, :-1], np.diff(rows, axis=1)]))
+        # one line per interval between samples: a pair reads it in one piece
+        self._table = np.ascontiguousarray(np.vstack([rows[:, :-1], np.diff(rows, axis=1)]).T)
+        self._table[:, 0] = np.remainder(self._table[:, 0] + math.pi, 2.0 * math.pi) - math.pi
+        self._moved = not np.array_equal(motion.mount.rotation, np.eye(3)) or motion.mount.translation.any()
         samples = np.arange(rows.shape[1], dtype=float)
         at = [np.interp(self.passes.at, samples, row) for row in rows]
         self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
@@ -94,7 +60,7 @@ class DepthField:
         state, end, step = self._meet(points, index)
         s = state.s + state.s_rate * step
         rho = state.rho + state.rho_rate * step
-        outline = s - self.passes.shift[index]
+        outline = s - self.passes.shift.take(index)
         depth, by_s, by_rho = self.cutter.profile.depth(outline, rho)
         if math.isfinite(self.cutter.half_length):
             off = s - self.cutter.shift
@@ -105,7 +71,7 @@ class DepthField:
             by_rho = np.where(past, 0.0, by_rho)
         by_turn = np.zeros(len(depth))
         follows = np.ones(len(depth))
-        partial = np.flatnonzero(self._partial[index])
+        partial = np.flatnonzero(self._partial.take(index))
         if len(partial):
             # where the tool stops turning, its sweep ends at the rake plane itself
             to_rake, rate, met = self._to_rake(state, step, self.passes.run_angle[index], partial)
@@ -117,6 +83,27 @@ class DepthField:
             follows[partial] = met
         slope = self._gradient(state, by_s, by_rho, by_turn, follows) if gradient else np.zeros((0, 3))
         return Meeting(depth, slope, outline, rho, end)
+
+    def floors(self, points: Floats, corners: Floats, index: Ints, radius: Floats) -> Floats:
+        """Lower bounds (c, m) of the passes' depths, in the convex hulls of `corners` (m, c, 3).
+
+        At any convex combination of a pass's corners, its depth is at least the same combination of these.
+        For the depth in one tooth is concave in the rake plane, and the pass is at least as deep as the tooth
+        that the middle (m, 3) is nearest to; what the map to the rake plane bends within `radius` (m,) of
+        the middle counts twice, at the corners and inside.
+        """
+        middle = self.evaluate(points, index)
+        change, bent, _ = self.bound(middle, index, radius)
+        count = corners.shape[1]
+        each = np.repeat(index, count)
+        meeting = self.evaluate(corners.reshape(-1, 3), each)
+        tooth = np.repeat(self.cutter.profile.tooth(middle.s), count)
+        depth = self.cutter.profile.depth_in(tooth, meeting.s, meeting.rho)
+        off = meeting.s + self.passes.shift[each] - self.cutter.shift
+        depth = np.minimum(depth, self.cutter.half_length - np.abs(off))
+        floors = depth.reshape(-1, count).T - 2.0 * bent
+        level = middle.depth - change
+        return np.where(level > floors.mean(axis=0), level, floors)
 
     def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats, Floats]:
         """Proved bounds on the field within `radius` (m,) of the points of a meeting [mm].
@@ -136,18 +123,22 @@ class DepthField:
         p = self.passes
         # no point of the block can meet the edge further in than this, if `change` is less than 2 radius
         low = np.maximum(meeting.rho - 2.0 * radius, 1e-6)
-        share = p.slant[index] / (1.0 + p.slant[index]) * self._inner / low
+        own = p.slant.take(index)
+        nearer = self._inner / ((1.0 + own) * low)
+        share = own * nearer
         proved = share < STEEPEST
         slant = np.where(proved, share / (1.0 - np.where(proved, share, 0.0)), 0.0)
-        slower = (1.0 + slant) / (1.0 + p.slant[index]) * self._inner / low
+        slower = (1.0 + slant) * nearer
         change = radius * np.sqrt(1.0 + slant**2)
-        curvature = (1.0 + slant) ** 4 / low + 2.0 * (1.0 + slant) ** 2 * slower * p.turn[index]
-        jumps = 1.0 + 2.0 * radius * slower * p.samples[index]
-        jolt = p.jolt[index] * slower * np.maximum(slower, 1.0)
-        bent = 0.5 * curvature * radius**2 + jolt * radius * jumps + p.creep[index]
+        square = (1.0 + slant) * (1.0 + slant)
+        curvature = square * (square / low + 2.0 * slower * p.turn.take(index))
+        jumps = 1.0 + 2.0 * radius * slower * p.samples.take(index)
+        jolt = p.jolt.take(index) * slower * np.maximum(slower, 1.0)
+        creep = p.creep.take(index)
+        bent = 0.5 * curvature * radius * radius + jolt * radius * jumps + creep
         excess = self.cutter.profile.takeover(meeting.s, meeting.rho, change)
-        partial = self._partial[index]
-        change = np.where(partial, radius * (1.0 + WIDEST + slant), change) + p.creep[index]
+        partial = self._partial.take(index)
+        change = np.where(partial, radius * (1.0 + WIDEST + slant), change) + creep
         change[~proved] = np.inf
         bent[~proved | partial] = np.inf
         return change, bent, excess
@@ -162,29 +153,42 @@ class DepthField:
         a, b, _ = self._basis @ np.stack([x, y, z])
         return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel)
 
-    def _meet(self, points: Floats, index: Ints) -> tuple[_State, Floats, Floats]:
+    def _meet(self, points: Floats, index: Ints) -> tuple[State, Floats, Floats]:
         """The points near their meeting instants, those instants, and the step that is left to them."""
         p = self.passes
-        local = (points @ self._mount.rotation.T + self._mount.translation).T
-        first, last, angle = p.first[index], p.last[index], p.angle[index]
-        at = p.at[index]
+        local = np.ascontiguousarray(points.T)
+        if self._moved:
+            local = self._mount.rotation @ local + self._mount.translation[:, None]
+        first, last, angle = p.first.take(index), p.last.take(index), p.angle.take(index)
+        at = p.at.take(index)
         state = self._state(local, at, angle)
-        for _ in range(ROUNDS):
-            at = np.clip(at - state.lag / state.lag_rate, first, last)
-            state = self._state(local, at, angle)
-            if np.abs(state.lag).max(initial=0.0) < SETTLED or not len(
-                self._unsettled(state, at, first, last)
-            ):
-                break
-        else:
-            rows = self._unsettled(state, at, first, last)
-            at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
-            state = self._state(local, at, angle)
+        at = np.clip(at - state.lag / state.lag_rate, first, last)
+        state = self._state(local, at, angle)
+        rows = self._unsettled(state, at, first, last)
+        if len(rows):
+            late = local[:, rows], first[rows], last[rows], angle[rows]
+            at[rows] = self._search(at[rows] - state.lag[rows] / state.lag_rate[rows], *late)
+            state.put(rows, self._state(late[0], at[rows], late[3]))
         end = np.clip(at - state.lag / state.lag_rate, first, last)
         return state, end, end - at
 
+    def _search(self, at: Floats, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
+        """Meeting instants to within SETTLED, by Newton's method from `at`."""
+        at = np.clip(at, first, last)
+        rows = np.arange(len(at))
+        for _ in range(ROUNDS):
+            state = self._state(local[:, rows], at[rows], angle[rows])
+            left = self._unsettled(state, at[rows], first[rows], last[rows])
+            if not len(left):
+                return at
+            wanted = (at[rows] - state.lag / state.lag_rate)[left]
+            rows = rows[left]
+            at[rows] = np.clip(wanted, first[rows], last[rows])
+        at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
+        return at
+
     @staticmethod
-    def _unsettled(state: _State, at: Floats, first: Floats, last: Floats) -> Ints:
+    def _unsettled(state: State, at: Floats, first: Floats, last: Floats) -> Ints:
         """Rows of the points that can still come closer to their meeting instant."""
         free = np.abs(state.lag) >= SETTLED
         wanted = at - state.lag / state.lag_rate
@@ -204,7 +208,7 @@ class DepthField:
 
     @staticmethod
     def _to_rake(
-        state: _State, step: Floats, run: Floats, rows: Ints
+        state: State, step: Floats, run: Floats, rows: Ints
     ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """Angle (k,) from the end of the sweep, its rate across the rake plane, and whether they meet.
 
@@ -219,11 +223,11 @@ class DepthField:
         rate = np.where(met, side * state.tool_rate[rows] / state.lag_rate[rows], np.sign(lag))
         return np.clip(angle, -WIDEST, WIDEST), np.where(np.abs(angle) < WIDEST, rate, 0.0), met
 
-    def _state(self, local: Floats, at: Floats, angle: Floats) -> _State:
+    def _state(self, local: Floats, at: Floats, angle: Floats) -> State:
         """Points `local` (3, m) at fractional samples `at` (m,), edges at unwrapped tool `angle`."""
-        cell = np.minimum(at.astype(np.int64), self._table.shape[1] - 1)
+        cell = np.minimum(at.astype(np.int64), len(self._table) - 1)
         part = at - cell
-        work, tool, cx, cy, cz, d_work, d_tool, d_cx, d_cy, d_cz = self._table.take(cell, axis=1)
+        work, tool, cx, cy, cz, d_work, d_tool, d_cx, d_cy, d_cz = self._table.take(cell, axis=0).T
         work = work + part * d_work
         cos, sin = np.cos(work), np.sin(work)
         x = local[0] * cos - local[1] * sin
@@ -238,7 +242,7 @@ class DepthField:
         lag = tool - angle - np.arctan2(b, a)
         lag_rate = d_tool - (a * b_rate - b * a_rate) / rho2
         lag_rate[lag_rate == 0.0] = STILL
-        return _State(
+        return State(
             cos=cos,
             sin=sin,
             side=np.stack([a, b]),
@@ -253,7 +257,7 @@ class DepthField:
         )
 
     def _gradient(
-        self, state: _State, by_s: Floats, by_rho: Floats, by_turn: Floats, follows: Floats
+        self, state: State, by_s: Floats, by_rho: Floats, by_turn: Floats, follows: Floats
     ) -> Floats:
         """Gradient (m, 3) in the part frame; the meeting instant `follows` the point (1) or not (0)."""
         a, b = state.side / state.rho
@@ -263,5 +267,5 @@ class DepthField:
         )
         across = np.stack([by_rho * a - drift * b, by_rho * b + drift * a, by_s])
         gx, gy, gz = self._basis.T @ across
-        turned = np.stack([gx * state.cos + gy * state.sin, gy * state.cos - gx * state.sin, gz], axis=1)
-        return turned @ self._mount.rotation
+        turned = np.stack([gx * state.cos + gy * state.sin, gy * state.cos - gx * state.sin, gz])
+        return (self._mount.rotation.T @ turned if self._moved else turned).T

@@ -118,7 +118,7 @@ def first_cull(sweep: Sweep, middle: Floats, corners: Floats) -> Culled:
         own = lists.of(np.arange(part.start, part.stop))
         depth = sweep.evaluate(middle[items[own.owner()]], own.passes).depth
         judge = own.passes[leaders(depth, own.start)[1]]
-        floors = _floors(sweep, middle[items], corners[items], judge)
+        floors = sweep.floors(middle[items], corners[items], judge, _radius(middle[items], corners[items]))
         return _judged(sweep, middle[items], corners[items], own, floors)
 
     return _gathered(len(middle), some, lists.start, work)
@@ -139,28 +139,13 @@ def cull(sweep: Sweep, middle: Floats, corners: Floats, parent: Ints, tangents: 
         way = middle[items] - above.middle
         height = above.plane[0] + (above.plane[1:] * way.T[:, owner]).sum(axis=0)
         judge = above.lists.passes[leaders(height, above.lists.start)[1]]
-        floors = _floors(sweep, middle[items], corners[items], judge)
+        floors = sweep.floors(middle[items], corners[items], judge, _radius(middle[items], corners[items]))
         outside = _radius(above.middle, corners[items]) > above.radius * (1.0 + ROUNDING)
         spokes = _spokes(above.middle, corners[items])
         keep = can_matter(above.plane, above.over, owner, spokes, floors) | outside[owner]
         return _judged(sweep, middle[items], corners[items], above.lists.where(keep), floors)
 
     return _gathered(len(middle), some, np.concatenate([[0], np.cumsum(length[some])]), work)
-
-
-def _floors(sweep: Sweep, middle: Floats, corners: Floats, judge: Ints) -> Floats:
-    """Lower bounds (8, n) of the field from one pass for each block, at its corners.
-
-    At any convex combination of the corners the field is at least the same combination of these.
-    """
-    meeting = sweep.evaluate(middle, judge)
-    change, bent, excess = sweep.bound(meeting, judge, _radius(middle, corners))
-    depth = sweep.evaluate(corners.reshape(-1, 3), np.repeat(judge, 8)).depth
-    floors = depth.reshape(-1, 8).T - 2.0 * bent
-    # where another tooth or the land may take over, the corners prove nothing
-    mixed = excess > 0
-    floors[:, mixed] = (meeting.depth - change)[mixed]
-    return floors
 
 
 def _judged(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates, floors: Floats) -> Culled:
@@ -170,7 +155,7 @@ def _judged(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates, fl
     middle, corners, lists = middle[rest], corners[rest], lists.of(rest)
     radius = _radius(middle, corners)
     owner = lists.owner()
-    meeting = sweep.evaluate(middle[owner], lists.passes, gradient=True)
+    meeting = sweep.evaluate(middle.take(owner, axis=0), lists.passes, gradient=True)
     change, bent, excess = sweep.bound(meeting, lists.passes, radius[owner])
     plane = np.vstack([meeting.depth, meeting.gradient.T])
     over = bent + excess

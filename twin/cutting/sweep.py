@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutting.field import DepthField, Meeting
+from twin.cutting.field import DepthField
 from twin.cutting.local import ROUNDING, Tangents
+from twin.cutting.meeting import Meeting
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join, leaders
 
 Floats = NDArray[np.float64]
@@ -56,6 +57,14 @@ class Sweep:
                 out, f.bound(part, index[here] - self._first[n], radius[here]), strict=True
             ):
                 whole[here] = piece
+        return out
+
+    def floors(self, points: Floats, corners: Floats, index: Ints, radius: Floats) -> Floats:
+        """As `DepthField.floors`, for passes of any tool."""
+        out = np.zeros((corners.shape[1], len(index)))
+        for n, f in enumerate(self.fields):
+            here = self._of(n, index)
+            out[:, here] = f.floors(points[here], corners[here], index[here] - self._first[n], radius[here])
         return out
 
     def near(self, points: Floats, radius: Floats) -> Candidates:

@@ -73,8 +73,13 @@ def test_culling_keeps_the_deepest_pass(cut, seed):
             value, gradient = sweep.deepest(points, home, tangents, gradient=True)
             assert value == pytest.approx(survivors, abs=1e-7)
             best = left[depth[:, left].argmax(axis=1)]
+            # where one pass alone is the deepest, and on neither side of a corner of its edge
             single = (depth[:, left] > survivors[:, None] - 1e-6).sum(axis=1) == 1
             expected = field.evaluate(points, best, gradient=True).gradient
+            step = 1e-6 * rng.standard_normal(points.shape)
+            for way in (-1.0, 1.0):
+                beside = field.evaluate(points + way * step, best, gradient=True).gradient
+                single &= np.abs(beside - expected).max(axis=1) < 1e-4
             assert gradient[single] == pytest.approx(expected[single], abs=1e-6)
             signs, _ = sweep.deepest(points, home, tangents, sign=True)
             assert ((signs > 0) == (survivors > 0))[np.abs(survivors) > 1e-7].all()

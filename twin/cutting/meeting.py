@@ -1,0 +1,51 @@
+"""A point of the stock and a cutting edge, at the instant when they meet and near it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """Where and how pairs of point and pass meet; arrays over pairs."""
+
+    depth: Floats
+    """(m,) [mm] positive = removed by this pass"""
+    gradient: Floats
+    """(m, 3) of the depth in the part frame; (0, 3) unless asked for"""
+    s: Floats
+    """(m,) axial position against the edge's outline [mm]"""
+    rho: Floats
+    """(m,) distance from the tool axis [mm]"""
+    instant: Floats
+    """(m,) sample (fractional) of the motion at which they meet"""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Points seen from the tool at given instants."""
+
+    cos: Floats
+    """of the work angle"""
+    sin: Floats
+    side: Floats
+    """(2, m) position across the tool axis, along basis 0 and 1"""
+    rho: Floats
+    s: Floats
+    rho_rate: Floats
+    """per sample, like the following"""
+    s_rate: Floats
+    lag: Floats
+    """[rad] edge angle minus point angle"""
+    lag_rate: Floats
+    tool_angle: Floats
+    tool_rate: Floats
+
+    def put(self, rows: Ints, part: "State") -> None:
+        """Replace some points."""
+        for name in self.__slots__:
+            getattr(self, name)[..., rows] = getattr(part, name)
