@@ -37,12 +37,13 @@ class Tangents:
     def of(self, items: Ints) -> "Tangents":
         """Those of some blocks."""
         pairs = self.lists.pairs(items)
+        start = np.concatenate([[0], np.cumsum(np.diff(self.lists.start)[items])])
         return Tangents(
-            self.lists.of(items),
+            Candidates(start, self.lists.passes.take(pairs)),
             self.middle[items],
             self.radius[items],
             self.plane.take(pairs, axis=1),
-            self.over[pairs],
+            self.over.take(pairs),
         )
 
 

@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 BATCH = 1 << 13
 """Pairs in one batch: every intermediate array stays under the 128 KiB that malloc keeps at hand."""
-LISTED = 1 << 15
+LISTED = 1 << 16
 """Pairs in one batch where only a few of them are evaluated."""
 
 

@@ -136,8 +136,8 @@ def cull(sweep: Sweep, middle: Floats, corners: Floats, parent: Ints, tangents: 
         items = some[part]
         above = tangents.of(parent[items])
         owner = above.lists.owner()
-        way = middle[items] - above.middle
-        height = above.plane[0] + (above.plane[1:] * way.T[:, owner]).sum(axis=0)
+        way = np.ascontiguousarray((middle[items] - above.middle).T)
+        height = above.plane[0] + (above.plane[1:] * way.take(owner, axis=1)).sum(axis=0)
         judge = above.lists.passes[leaders(height, above.lists.start)[1]]
         floors = sweep.floors(middle[items], corners[items], judge, _radius(middle[items], corners[items]))
         outside = _radius(above.middle, corners[items]) > above.radius * (1.0 + ROUNDING)
@@ -161,7 +161,8 @@ def _judged(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates, fl
     over = bent + excess
     keep = can_matter(plane, over, owner, _spokes(middle, corners), floors[:, rest])
     keep &= meeting.depth + change > 0
-    tangents = Tangents(lists.where(keep), middle, radius, plane[:, keep], over[keep])
+    rows = np.flatnonzero(keep)
+    tangents = Tangents(lists.where(keep), middle, radius, plane.take(rows, axis=1), over.take(rows))
     some = np.flatnonzero(np.diff(tangents.lists.start))
     return Culled(whole, rest[some], tangents.of(some), len(owner))
 
