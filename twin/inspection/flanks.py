@@ -25,6 +25,8 @@ POINTS = 480
 """points of a trace"""
 TRACES = 4
 """teeth traced, equally spaced"""
+NO_SLOPE = 5e-3
+"""a mean slope below this [µm] is the noise of the figures: none"""
 TIP_LIMIT = 0.95
 """profile evaluation ends here on the way from form to tip diameter, in roll length (ISO 1328-1:2013)"""
 
@@ -198,7 +200,10 @@ def _flank(*, profile: list[Trace | None], helix: list[Trace | None], index: Flo
 
 def _mean_slope(traces: list[Trace | None]) -> float | None:
     slopes = [t.slope_um for t in traces if t is not None]
-    return float(np.mean(slopes)) if len(slopes) == len(traces) else None
+    if len(slopes) < len(traces):
+        return None
+    mean = float(np.mean(slopes))
+    return 0.0 if abs(mean) < NO_SLOPE else mean
 
 
 def _largest(values: list[float], wanted: int) -> float | None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import fminbound
 
-from twin.errors import PartError
+from twin.errors import InputError, PartError
 from twin.inspection.balls import choose_ball, measure_balls, over_balls
 from twin.inspection.flanks import TIP_LIMIT, Placed, locate, measure_flanks, pitch_deviations
 from twin.inspection.involute import Involute, geometry, involute
@@ -23,6 +23,8 @@ from twin.inspection.solid import Floats, Solid
 
 SPUR_BELOW = 0.1
 """a found helix angle [degrees] below this is a spur gear's deviation"""
+NO_HELIX = 5e-5
+"""a helix angle [degrees] below this is the noise of the figures: none"""
 DEPTH = (0.8, 4.0)
 """possible depths of gear teeth, in modules"""
 MOST_SHIFT = 1.5
@@ -81,11 +83,12 @@ def find_gear(solid: Solid, outline: Outline, *, pressure_deg: float = 20.0) -> 
         raise PartError(f"{outline.count} teeth stand about the axis, but their flanks have holes")
     found = _fit(outline, radius, half_tooth, pressure_deg)
     # the involute may begin higher or reach lower than assumed: fit again from where this fit has it begin
-    form = geometry(_as_nominal(found, outline)).form_diameter / 2
+    form = _geometry_of(found, outline).form_diameter / 2
     fraction = max((form - outline.root_radius) / outline.depth, 0.05)
     if fraction < 0.85:
         radius, half_tooth = _thickness(solid, outline, fraction, 0.95)
         found = _fit(outline, radius, half_tooth, pressure_deg)
+        _geometry_of(found, outline)
     return found
 
 
@@ -132,7 +135,7 @@ def measure_gear(
     result = GearResult(
         number_of_teeth=gear.teeth,
         normal_module_mm=found.module,
-        helix_angle_deg=helix_deg,
+        helix_angle_deg=0.0 if abs(helix_deg) < NO_HELIX else helix_deg,
         hand=hand(helix_deg),
         lead_mm=2 * math.pi / abs(twist) if hand(helix_deg) != "spur" else None,
         profile_shift=found.shift,
@@ -244,6 +247,19 @@ def _fit(outline: Outline, radius: Floats, half_tooth: Floats, pressure_deg: flo
         pressure_deg=pressure_deg,
         straying=base * float(np.abs(rest - rest.mean()).max()),
     )
+
+
+def _geometry_of(found: Found, outline: Outline) -> Involute:
+    """Work out a found gear. Raises PartError: it is of no possible size or shape."""
+    try:
+        return geometry(_as_nominal(found, outline))
+    except InputError as fault:
+        largest = 2 * outline.tip_radius
+        raise PartError(
+            f"{found.teeth} teeth of normal module {found.module:.5g} mm on a largest diameter of "
+            f"{largest:.5g} mm were found: no gear of that size can be measured; the mesh's units may be "
+            "wrong, millimetres are expected"
+        ) from fault
 
 
 def _as_nominal(found: Found, outline: Outline) -> GearNominal:

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 from twin.inspection.gear import Found
+from twin.inspection.involute import geometry
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.inspection.result import GearResult, PolygonResult, Trace, Verdict
 from twin.inspection.tolerances import (
@@ -20,6 +21,12 @@ MODULE_LIMIT = 0.02
 """a module relatively farther off is another gear"""
 FLANK_LIMIT = 0.1
 """flanks farther off than this, in modules, are no flanks of the named gear"""
+OFFSET_LIMIT = 0.05
+"""flanks farther off than this, in modules, and the gear does not mesh as it should"""
+TIP_LIMIT = 0.1
+"""a tip diameter farther off than this, in modules, is another gear's"""
+TWIST_LIMIT = 0.5
+"""faces that turn by more than this [degrees] over the length are not plain"""
 OFFSET_WORTH = 0.01
 """flanks farther off than this, in modules, are worth a word"""
 CORNERS_OVER_FLATS = 1.13
@@ -153,9 +160,15 @@ def judge_gear(
     classes, tolerances, exceeded = grade_gear(gear)
     result = replace(gear, accuracy_class=classes, tolerances_um=tolerances)
     wrong = _unfinished(gear, nominal, whole=whole)
-    notes = _infeed(gear) if nominal is not None else []
-    if abs(gear.flank_offset_um or 0.0) > 1000 * FLANK_LIMIT * gear.reference.normal_module_mm:
-        wrong, notes = wrong + notes, []
+    notes = []
+    if nominal is None:
+        if wrong:
+            return result, Verdict.NOT_GRADED, [*wrong, *exceeded]
+    else:
+        notes = _infeed(gear, unmeasured)
+        if abs(gear.flank_offset_um or 0.0) > 1000 * OFFSET_LIMIT * nominal.normal_module_mm:
+            wrong, notes = wrong + notes, []
+        wrong += _tip(gear, nominal)
     allowed = nominal.accuracy_class if nominal is not None else None
     if classes and allowed is not None:
         measured = worst_values(gear)
@@ -187,14 +200,33 @@ def _unfinished(gear: GearResult, nominal: GearNominal | None, *, whole: bool) -
     return words
 
 
-def _infeed(gear: GearResult) -> list[str]:
+def _tip(gear: GearResult, nominal: GearNominal) -> list[str]:
+    """Say whether the tips stand where they were named."""
+    wanted = nominal.tip_diameter_mm
+    if wanted is None or abs(gear.tip_diameter_mm - wanted) <= TIP_LIMIT * nominal.normal_module_mm:
+        return []
+    return [f"tip {gear.tip_diameter_mm:.3f} mm instead of {wanted:g} mm"]
+
+
+def _infeed(gear: GearResult, unmeasured: dict[str, str]) -> list[str]:
     """Say whether the teeth are too thick or too thin, where that is worth a word."""
     offset = gear.flank_offset_um
     if offset is None or abs(offset) <= 1000 * OFFSET_WORTH * gear.reference.normal_module_mm:
         return []
-    if offset > 0:
-        return [f"the flanks lie {offset:.0f} µm outside the nominal: teeth too thick, not cut to depth"]
-    return [f"the flanks lie {-offset:.0f} µm inside the nominal: teeth too thin, cut too deep"]
+    nominal = geometry(gear.reference)
+    thickness = 2 * abs(offset) / 1000 / math.cos(nominal.pressure)
+    where, how, why = (
+        ("outside", "thick", "not cut to depth") if offset > 0 else ("inside", "thin", "cut too deep")
+    )
+    k = nominal.span_teeth()
+    if gear.span_mm is None:
+        span = f"not measurable ({unmeasured.get('span_mm', HOLES)})"
+    else:
+        span = f"{gear.span_mm:.3f} mm"
+    return [
+        f"the flanks lie {abs(offset):.0f} µm {where} the nominal: teeth too {how} by {thickness:.3f} mm, "
+        f"{why}; span over {k} teeth {span}, wanted {nominal.span(k):.3f} mm"
+    ]
 
 
 def judge_polygon(
@@ -204,7 +236,7 @@ def judge_polygon(
     shape = _shape_of_faces(polygon)
     if nominal is None:
         return Verdict.NOT_GRADED, [*shape, "no width across flats was named to judge by"]
-    wrong = []
+    wrong = _twisted(polygon)
     low, high = across_flats_limits(nominal.across_flats_mm, nominal.tolerance)
     limits = f"{nominal.tolerance} of {nominal.across_flats_mm:g} mm allows {low:.3f} to {high:.3f} mm"
     least, largest = polygon.across_flats_caliper_least_mm, polygon.across_flats_caliper_mm
@@ -228,6 +260,18 @@ def judge_polygon(
     if wrong:
         return Verdict.OUT, wrong[:1] + shape + wrong[1:]
     return Verdict.IN, [f"across flats {largest:.3f} mm {how}: {limits}", *shape]
+
+
+def _twisted(polygon: PolygonResult) -> list[str]:
+    """Say whether the faces turn, where plain ones are wanted: a nominal polygon has no twist."""
+    low, high = polygon.range_mm
+    turn = abs(polygon.twist_deg_per_mm) * (high - low)
+    if turn <= TWIST_LIMIT:
+        return []
+    return [
+        f"the faces are twisted by {abs(polygon.twist_deg_per_mm):.3f} °/mm {polygon.hand}-hand, {turn:.1f}° "
+        f"over {high - low:.2f} mm: plain faces are wanted"
+    ]
 
 
 def _shape_of_faces(polygon: PolygonResult) -> list[str]:

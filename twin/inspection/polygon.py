@@ -8,6 +8,7 @@ faces, the edges of concave ones).
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import Legendre
@@ -29,6 +30,10 @@ POINTS = 201
 """points read over the width of a face"""
 EDGE = 0.05
 """part of the half width left out at each edge of a face, where a mesh rounds the corner; the fit spans it"""
+MIDDLE = 0.05
+"""part of the half width, to both sides, that is the middle of a face"""
+TWIST_PLANES = 97
+"""sections whose turn gives the twist"""
 DEGREE = 6
 """of the polynomial through a face"""
 ROCK = math.radians(5.0)
@@ -39,6 +44,10 @@ LOBED = 0.6
 """bow, as part of that of a round bar, from which a face is no face"""
 UNTWISTED = 1e-3
 """a twist below this [degrees/mm] has no hand"""
+NO_TWIST = 5e-5
+"""a twist below this [degrees/mm] is the noise of the figures: none"""
+NO_BOW = 5e-3
+"""a bow below this [µm] is the noise of the figures: none"""
 
 
 def measure_polygon(
@@ -53,6 +62,7 @@ def measure_polygon(
         PartError: lobes instead of faces, faces at too different distances, or not about the axis.
 
     """
+    outline = _turn(solid, outline)
     sides = outline.count
     heights = outline.low + (outline.high - outline.low) * np.linspace(END, 1 - END, PLANES)
     grain = outline.tip_radius * math.pi / sides / POINTS
@@ -74,7 +84,7 @@ def measure_polygon(
         unmeasured["across_flats_caliper_mm"] = f"with {sides} sides no face stands opposite another"
     found = np.array([f.direction_deg for f in faces])
     mid = np.array([f.mid_distance_mm for f in faces])
-    bow = float(np.mean([f.bow_um for f in faces]))
+    bow = _unless_noise(float(np.mean([f.bow_um for f in faces])), NO_BOW)
     if bow / 1000 > LOBED * _arc_height(float(mid.mean()), float(np.mean([f.width_mm for f in faces]))):
         raise PartError(f"{sides} lobes stand about the axis, rounder than any turned face: no polygon")
     if np.ptp(mid) > IRREGULAR * mid.mean():
@@ -82,7 +92,7 @@ def measure_polygon(
             f"{sides} faces stand about the axis, but {mid.min():.3f} to {mid.max():.3f} mm from it: "
             "no regular polygon"
         )
-    twist = float(np.mean([f.twist_deg_per_mm for f in faces]))
+    twist = _unless_noise(math.degrees(outline.twist), NO_TWIST)
     result = PolygonResult(
         number_of_sides=sides,
         across_flats_mm=2 * float(mid.mean()),
@@ -103,6 +113,32 @@ def measure_polygon(
         reference=nominal,
     )
     return result, unmeasured
+
+
+def _turn(solid: Solid, outline: Outline) -> Outline:
+    """Return the outline with its twist and phase by the turn of whole sections, over the whole length.
+
+    A section's turn is the phase of the harmonic of as many waves as there are sides. Single faces would not
+    do: where a straight insert cuts a twisted face, that face is a flight of stairs, one step each work turn.
+    """
+    heights = outline.low + (outline.high - outline.low) * (np.arange(TWIST_PLANES) + 0.5) / TWIST_PLANES
+    wave = np.zeros(TWIST_PLANES, dtype=np.complex128)
+    done = 0
+    for outer in map(outer_outlines, plane_segments_in_parts(solid, heights)):
+        start, end = (p[:, 0] + 1j * p[:, 1] for p in (outer.start, outer.end))
+        middle = (start + end) / 2
+        # each chord's sector by its angle and squared distance
+        weight = np.angle(end * start.conj()) * np.abs(middle) ** 2
+        np.add.at(wave, done + outer.plane, weight * (middle.conj() / np.abs(middle)) ** outline.count)
+        done += len(outer.heights)
+    along = heights - outline.middle
+    rest = wave * np.exp(1j * outline.count * (outline.phase + outline.twist * along))
+    slope, offset = np.polyfit(along, -np.unwrap(np.angle(rest)) / outline.count, 1)
+    return replace(outline, twist=outline.twist + float(slope), phase=outline.phase + float(offset))
+
+
+def _unless_noise(value: float, noise: float) -> float:
+    return 0.0 if abs(value) < noise else value
 
 
 def _subdivided(points: Floats, grain: float) -> Floats:
@@ -141,6 +177,9 @@ def _face(outline: Outline, heights: Floats, sections: list[Floats], direction: 
     left, right = (_meet(profile, math.copysign(pitch / 2, y_end), r_end, outline) for y_end, r_end in ends)
     whole = np.linspace(left, right, POINTS)
     slope, distance = np.polyfit(whole, profile(whole), 1)
+    # a face of several cuts is not as smooth as the polynomial
+    missed = x.ravel() - design @ solution
+    middle = float(profile(0.0) + missed.reshape(x.shape)[:, np.abs(y) <= MIDDLE * width].mean())
     flat = distance + slope * across + tilt * along + rest_of_twist * along * across
     rest = np.concatenate([(x - flat).ravel(), profile(whole) - distance - slope * whole])
     at_left, at_right = profile(left), profile(right)
@@ -149,10 +188,10 @@ def _face(outline: Outline, heights: Floats, sections: list[Floats], direction: 
         direction_deg=math.degrees(np.interp(outline.middle, heights, direction) - math.atan(slope)),
         distance_mm=float(distance * math.cos(math.atan(slope))),
         width_mm=right - left,
-        mid_distance_mm=float(profile(0.0)),
-        bow_um=1000 * float(profile(0.0) - chord),
+        mid_distance_mm=middle,
+        bow_um=_unless_noise(1000 * float(middle - chord), NO_BOW),
         flatness_um=1000 * float(np.ptp(rest)),
-        twist_deg_per_mm=math.degrees(outline.twist - rest_of_twist),
+        twist_deg_per_mm=_unless_noise(math.degrees(outline.twist - rest_of_twist), NO_TWIST),
     )
 
 

@@ -253,7 +253,7 @@ def _twist(solid: Solid, count: int, low: float, high: float, radius: float) -> 
     """Return twist [rad/mm] and a tooth centre's phase [rad] at mid-height, from sections close together."""
     pitch = 2 * math.pi * radius / count
     # below 45° a quarter pitch of height turns the teeth by less than half a pitch: no ambiguity
-    planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 401, 2000))
+    planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 33, 2000))
     heights = _midpoints(low, high, planes)
     segments = plane_segments(solid, heights, faces=faces_at_radius(solid, radius))
     crossings = circle_crossings(segments, np.array([radius]))

@@ -144,7 +144,7 @@ class PolygonResult:
     flatness_um: float
     """largest of the faces, about their least-squares planes, twist taken out"""
     twist_deg_per_mm: float
-    """+ right-hand"""
+    """of whole sections over the length, + right-hand"""
     hand: str
     """"none" | "right" | "left" """
     concentricity_um: float

@@ -153,7 +153,9 @@ class _Reader:
         tool = next(iter(tools.values()))
         filled: dict[str, float] = {}
         if nominal.tip_diameter_mm is None:
-            filled["tip_diameter_mm"] = work.diameter_mm
+            pitch = nominal.number_of_teeth * nominal.normal_module_mm
+            pitch /= math.cos(math.radians(nominal.helix_angle_deg))
+            filled["tip_diameter_mm"] = pitch + 2 * nominal.normal_module_mm * (1 + nominal.profile_shift)
         if nominal.face_width_mm is None:
             filled["face_width_mm"] = work.length_mm
         if isinstance(tool, Hob):

@@ -290,9 +290,9 @@ def test_class_and_verdict_by_what_was_put_in(parts, named):
 @pytest.mark.parametrize(
     ("shift", "verdict", "words"),
     [
-        (0.4, Verdict.OUT, "274 µm outside the nominal: teeth too thick, not cut to depth"),
+        (0.4, Verdict.OUT, "274 µm outside the nominal: teeth too thick by 0.582 mm, not cut to depth"),
         (0.1, Verdict.IN, "68 µm outside the nominal"),
-        (-0.1, Verdict.IN, "68 µm inside the nominal: teeth too thin, cut too deep"),
+        (-0.1, Verdict.IN, "68 µm inside the nominal: teeth too thin by 0.146 mm, cut too deep"),
         (0.0, Verdict.IN, ""),
     ],
 )
