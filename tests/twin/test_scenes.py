@@ -19,7 +19,7 @@ FEED_MARK = 2.0**2 * math.sin(math.radians(20)) / (4 * 70) * 1e3
 FLAT = math.pi**2 * 2.0 * math.sin(math.radians(20)) / (4 * 20 * 12**2) * 1e3
 """delta_y at the pitch point [µm], 0.586"""
 ALLOWED = FEED_MARK + FLAT + 4.0
-"""What issue and theory leave of a flank cut with ideal axes [µm]."""
+"""What a flank cut with ideal axes may stand off the involute: theory and 4 µm for the mesh."""
 
 
 def run(tmp_path, scene, *options):
