@@ -10,7 +10,7 @@ demo: $(READY)
 	$(BIN)/hobtwin run scenes/spur_m2_z20
 
 test: $(DEV)
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto --dist worksteal -p no:benchmark
 
 install: $(DEV)
 
