@@ -16,11 +16,11 @@ from scipy.spatial import ConvexHull
 
 from twin.errors import PartError
 from twin.inspection.nominal import PolygonNominal
-from twin.inspection.recognise import Outline
+from twin.inspection.recognise import Complexes, Outline
 from twin.inspection.result import Face, PolygonResult
-from twin.inspection.sections import outer_outlines, plane_segments_in_parts
+from twin.inspection.sections import Segments, outer_outlines, plane_segments_in_parts
 from twin.inspection.sections import outline as chained_outline
-from twin.inspection.solid import Floats, Solid
+from twin.inspection.solid import Floats, Ints, Solid
 
 PLANES = 21
 """sections read over the length"""
@@ -115,6 +115,18 @@ def measure_polygon(
     return result, unmeasured
 
 
+def _short_chords(outer: Segments, sides: int) -> tuple[Complexes, Complexes, Ints]:
+    """Cut each chord so that a side has at least 16 of them: starts, ends (n,), and the chord of each."""
+    start, end = (p[:, 0] + 1j * p[:, 1] for p in (outer.start, outer.end))
+    parts = np.maximum(np.ceil(np.abs(np.angle(end * start.conj())) * sides * 8 / math.pi), 1).astype(
+        np.int64
+    )
+    row = np.repeat(np.arange(len(parts)), parts)
+    at = (np.arange(len(row)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[row]
+    step = (end - start)[row]
+    return start[row] + at * step, start[row] + (at + 1 / parts[row]) * step, row
+
+
 def _turn(solid: Solid, outline: Outline) -> Outline:
     """Return the outline with its twist and phase by the turn of whole sections, over the whole length.
 
@@ -125,11 +137,11 @@ def _turn(solid: Solid, outline: Outline) -> Outline:
     wave = np.zeros(TWIST_PLANES, dtype=np.complex128)
     done = 0
     for outer in map(outer_outlines, plane_segments_in_parts(solid, heights)):
-        start, end = (p[:, 0] + 1j * p[:, 1] for p in (outer.start, outer.end))
+        start, end, row = _short_chords(outer, outline.count)
         middle = (start + end) / 2
         # each chord's sector by its angle and squared distance
         weight = np.angle(end * start.conj()) * np.abs(middle) ** 2
-        np.add.at(wave, done + outer.plane, weight * (middle.conj() / np.abs(middle)) ** outline.count)
+        np.add.at(wave, done + outer.plane[row], weight * (middle.conj() / np.abs(middle)) ** outline.count)
         done += len(outer.heights)
     along = heights - outline.middle
     rest = wave * np.exp(1j * outline.count * (outline.phase + outline.twist * along))

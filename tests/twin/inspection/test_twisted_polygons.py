@@ -2,6 +2,7 @@
 
 import math
 
+import manifold3d as m3
 import numpy as np
 import pytest
 
@@ -108,3 +109,15 @@ def test_nothing_reads_as_minus_nothing(parts, phase_deg):
     said = " ".join((*result.findings, *part_lines(result)))
     assert "-0.0" not in said
     assert "concave" not in said
+
+
+@pytest.mark.parametrize(("sides", "pieces"), [(4, 1), (6, 1), (5, 1), (6, 3)])
+def test_a_prism_of_few_large_facets_is_a_polygon(sides, pieces):
+    """A CAD export has one quadrilateral a face: its chords are as long as the faces."""
+    prism = m3.Manifold.cylinder(10.0, 9.0, 9.0, sides, True).refine(pieces).translate((0, 0, -5))
+    mesh = prism.to_mesh64()
+    found = inspect(np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts).astype(np.int64))
+    assert found.kind == "polygon"
+    assert found.polygon.number_of_sides == sides
+    assert found.polygon.across_flats_mm == pytest.approx(18 * math.cos(math.pi / sides), abs=1e-4)
+    assert found.polygon.bow_um == pytest.approx(0, abs=0.05)
