@@ -134,6 +134,9 @@ def _job_rows(outcome: Outcome) -> list[Row]:
             text = f"polygon head, {tool.inserts} insert(s) on radius {tool.tip_radius_mm:g} mm"
         rows.append(Row(label=f"Tool T{number:02d}" if number else "Tool", value=text))
     rows.append(Row(label="Program", value=job.program.name))
+    if outcome.session.skipped_s:
+        skipped = f"{outcome.session.skipped_s:.1f} s at standstill are left out of the recording"
+        rows.append(Row(label="Dwell", value=skipped))
     rows.append(
         Row(
             label="Cut",
