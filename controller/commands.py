@@ -26,8 +26,45 @@ class Move:
     absolute: Mapping[int, float]
     incremental: Mapping[int, float]
     feed: Feed | None
-    spans: Mapping[int, Span]
-    """where each axis was commanded"""
+    places: Mapping[int, int]
+    """axis column -> text column, from 1, of the word that commanded it"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arc:
+    """G02, G03: a circular arc at feed; axes outside the plane go along in proportion (helix)."""
+
+    absolute: Mapping[int, float]
+    incremental: Mapping[int, float]
+    plane: tuple[int, int]
+    """columns of the first and the second axis: Z X of G18, X Y of G17, Y Z of G19"""
+    centre: tuple[float, float]
+    """from the start point, in plane order [mm]"""
+    clockwise: bool
+    """G02, looking against the third axis of the right-handed plane"""
+    feed: Feed
+    places: Mapping[int, int]
+    """axis column -> text column of its word"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thread:
+    """G32: straight and bound to the angle of the work spindle; no override, no feed hold."""
+
+    absolute: Mapping[int, float]
+    incremental: Mapping[int, float]
+    lead: float
+    """[mm per turn] along the axis that travels furthest"""
+    start_angle: float = 0.0
+    """Q: spindle angle at which the cut begins [deg]"""
+    places: Mapping[int, int]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Skip:
+    """G31: a straight move at feed that ends early when the skip signal comes; #5061 ff. hold where."""
+
+    move: Move
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,15 +72,35 @@ class MachineMove:
     """G53: rapid to slide positions."""
 
     target: Mapping[int, float]
-    spans: Mapping[int, Span]
+    places: Mapping[int, int]
+    """axis column -> text column of its word"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferenceReturn:
-    """G28 from the intermediate point, M19: the axes go to their first reference points."""
+    """G28, G30 from the intermediate point, M19: the axes go to their reference points."""
 
     axes: tuple[int, ...]
     span: Span
+    point: int = 1
+    """1 to 4"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceCheck:
+    """G27, after its positioning: the axes must stand on their first reference points."""
+
+    axes: tuple[int, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StrokeCheck:
+    """G22 and G23: stored stroke limit 2 on, its area changed or not, and off."""
+
+    on: bool
+    area: Mapping[int, tuple[float, float]] | None = None
+    """column -> lower and upper bound, machine coordinates as slide travel [mm]; None = as it is"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -131,8 +188,13 @@ class ProgramEnd:
 
 Command = (
     Move
+    | Arc
+    | Thread
+    | Skip
     | MachineMove
     | ReferenceReturn
+    | ReferenceCheck
+    | StrokeCheck
     | Dwell
     | Couple
     | Uncouple

@@ -113,7 +113,7 @@ class Motion(StraightMotion):
         if pair and not self._compensated and travel[pair.inclined] != 0.0 and self.references.lose():
             found = f"a move of {axes[pair.inclined].letter} with NOZAGC = 1"
             self._warn(Alarm(number="HT9108", found=found, span=self._span))
-        self._travel(self._to_slides @ travel, travel, command.feed, command.spans, exact)
+        self._travel(self._to_slides @ travel, travel, command.feed, command.places, exact)
 
     def _machine_move(self, command: MachineMove) -> None:
         slides = np.zeros(len(self.machine.axes))
@@ -122,7 +122,7 @@ class Motion(StraightMotion):
             delta = target - float(now[axis])
             slides[axis] = shortest(delta) if self.machine.axes[axis].type_a else delta
         slides[np.abs(slides) < NOTHING] = 0.0
-        self._travel(slides, self._to_cartesian @ slides, None, command.spans, {})
+        self._travel(slides, self._to_cartesian @ slides, None, command.places, {})
 
     # Reference points
 

@@ -120,7 +120,7 @@ def _append_move(
             absolute={column: values[column] for column in absolute},
             incremental={column: values[column] for column in incremental},
             feed=feed,
-            spans={column: draft.block.place(word) for column, word in words.items()},
+            places={column: word.column for column, word in words.items()},
         )
     )
 
@@ -247,6 +247,6 @@ def _machine_move(draft: Draft) -> None:
     draft.commands.append(
         MachineMove(
             target={column: draft.axis_value(column, word) for column, word in absolute.items()},
-            spans={column: draft.block.place(word) for column, word in absolute.items()},
+            places={column: word.column for column, word in absolute.items()},
         )
     )

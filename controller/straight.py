@@ -7,6 +7,7 @@ one closed form or by the measured speed in periods of 8 ms; all other moves do 
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +85,7 @@ class StraightMotion:
         slides: Floats,
         cartesian: Floats,
         feed: Feed | None,
-        spans: Mapping[int, Span],
+        places: Mapping[int, int],
         exact: Mapping[int, float],
     ) -> None:
         if feed and feed.per_revolution:
@@ -96,7 +97,7 @@ class StraightMotion:
         if feed and feed.measured:
             tick = self._to_tick()
             if not self._commanded_is_measured:
-                self._feed_on(RevolutionFeed(path=path, feed=feed, tick=tick), spans)
+                self._feed_on(RevolutionFeed(path=path, feed=feed, tick=tick), places)
                 return
         speed = self._path_speed(path, feed)
         if path.end > 0.0:
@@ -106,7 +107,7 @@ class StraightMotion:
                 self._lay(path, phase, self.time)
                 self.time += phase.duration
             self._adapt_surface(start, path, rapid=feed is None)
-        self._arrive(path, spans)
+        self._arrive(path, places)
 
     def _path(
         self, slides: Floats, cartesian: Floats, feed: Feed | None, exact: Mapping[int, float]
@@ -164,7 +165,7 @@ class StraightMotion:
             position = float(path.own[axis]) + share * phase.start
             self.timeline.tracks[axis].add(time, position, share * phase.speed, share * phase.acceleration)
 
-    def _arrive(self, path: Path, spans: Mapping[int, Span]) -> None:
+    def _arrive(self, path: Path, places: Mapping[int, int]) -> None:
         """Stand still at the end of the path, bring the registers there, and stop on a stroke limit."""
         for axis in path.moving:
             position = float(path.own[axis] + path.slides[axis] * path.fraction)
@@ -187,9 +188,13 @@ class StraightMotion:
             raise alarm(
                 _OVERTRAVEL[path.crossing.upper],
                 found,
-                spans.get(path.crossing.axis, self._span),
+                self._place(places.get(path.crossing.axis)),
                 valid=valid,
             )
+
+    def _place(self, column: int | None) -> Span | None:
+        """The word at a text column of the present block; the block itself where there is none."""
+        return replace(self._span, column=column) if self._span and column else self._span
 
     # Feed per revolution by the measured speed
 
@@ -212,11 +217,11 @@ class StraightMotion:
         gear = self.coupling.gear
         return gear.master if gear else self._feed_axis()
 
-    def _feed_on(self, revolution: RevolutionFeed, spans: Mapping[int, Span]) -> None:
+    def _feed_on(self, revolution: RevolutionFeed, places: Mapping[int, int]) -> None:
         """Wait for the next reading of the encoder, then feed for one period."""
-        self._at_encoders(lambda sensor: self._feed_period(revolution, spans, sensor))
+        self._at_encoders(lambda sensor: self._feed_period(revolution, places, sensor))
 
-    def _feed_period(self, revolution: RevolutionFeed, spans: Mapping[int, Span], sensor: Sensor) -> None:
+    def _feed_period(self, revolution: RevolutionFeed, places: Mapping[int, int], sensor: Sensor) -> None:
         turns = abs(sensor.speed(self._feed_axis())) / (60.0 * DEG_PER_S)
         path = revolution.path
         wanted = turns * revolution.feed.value
@@ -237,12 +242,12 @@ class StraightMotion:
             radius = float(self.registers.absolute[radial] + path.cartesian[radial] * done)
             self.spindles.adapt(radius, before)
         if revolution.finished:
-            self._arrive(path, spans)
+            self._arrive(path, places)
         elif revolution.stalled:
             found = "the work axis at standstill for one second by its encoder"
             raise alarm("HT9007", found, self._span, valid="a spindle that turns")
         else:
-            self._feed_on(revolution, spans)
+            self._feed_on(revolution, places)
 
     def _adapt_surface(self, start: float, path: Path, *, rapid: bool) -> None:
         """Under G96 the spindle follows the diameter; at rapid it heads for the end of the path."""
