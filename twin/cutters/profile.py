@@ -61,46 +61,30 @@ class ToothProfile:
         g_x *= np.where(local < 0, -1.0, 1.0)
         return depth, g_x, g_y
 
-    def tooth(self, s: Floats) -> Floats:
-        """Axial position of the nearest tooth's middle."""
-        return s - self.fold(s)
+    def tooth_depth(self, tooth: Floats, s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
+        """Signed depth in the tooth with its middle at `tooth` alone, and its derivatives by `s` and `rho`.
 
-    def depth_in(self, tooth: Floats, s: Floats, rho: Floats) -> Floats:
-        """Signed depth in the tooth at `tooth` alone: a concave function, nowhere above `depth`."""
-        return self._tooth(np.abs(s - tooth), rho)[0]
-
-    def takeover(self, s: Floats, rho: Floats, reach: Floats) -> Floats:
-        """Bound on how far `depth` rises above its own tangent within `reach` of a point, in the rake plane.
-
-        A tooth is convex, so its depth is concave: the tangent bounds it from above. Only another tooth or
-        the land can rise above the tangent of the one that is deepest here, by the difference of tangents.
+        A tooth is convex, so this is a concave function; nowhere above `depth`.
         """
-        x = np.abs(self.fold(s))
-        own, g_x, g_y = self._tooth(x, rho)
-        land = self.root - rho
-        # depths have no slope above 1, and the next tooth is deeper only beyond the middle of the gap
-        close = (own - land < 2.0 * reach) | (x + reach > 0.5 * self.pitch)
-        rows = np.flatnonzero(close)
-        excess = np.zeros(len(s))
-        excess[rows] = self._taken_over(x[rows], rho[rows], reach[rows], (own[rows], g_x[rows], g_y[rows]))
-        return excess
+        local = s - tooth
+        depth, g_x, g_y = self._tooth(np.abs(local), rho)
+        g_x *= np.where(local < 0, -1.0, 1.0)
+        return depth, g_x, g_y
 
-    def _taken_over(
-        self, x: Floats, rho: Floats, reach: Floats, tooth: tuple[Floats, Floats, Floats]
-    ) -> Floats:
-        """`takeover` at `x` >= 0 from the nearest tooth's middle, given its depth and derivatives there."""
-        own, g_x, g_y = tooth
-        land = self.root - rho
-        deepest, d_x, d_y = np.maximum(own, land), g_x, g_y
-        below = land > own
-        if below.any():
-            d_x, d_y = np.where(below, 0.0, g_x), np.where(below, -1.0, g_y)
-        excess = np.maximum(land - deepest + np.hypot(d_x, d_y + 1.0) * reach, 0.0)
-        excess = np.maximum(excess, own - deepest + np.hypot(g_x - d_x, g_y - d_y) * reach)
-        if math.isfinite(self.pitch):
-            other, o_x, o_y = self._tooth(self.pitch - x, rho)
-            excess = np.maximum(excess, other - deepest + np.hypot(o_x + d_x, o_y - d_y) * reach)
-        return excess
+    def teeth(self, low: float, high: float) -> NDArray[np.int64]:
+        """Numbers of the teeth that reach between two axial positions above the land; tooth k is at k pitches."""
+        if math.isinf(self.pitch):
+            return np.zeros(1, dtype=np.int64)
+        first = math.ceil((low - self.half_width) / self.pitch)
+        return np.arange(first, math.floor((high + self.half_width) / self.pitch) + 1)
+
+    @property
+    def half_width(self) -> float:
+        """Half the width of a tooth where it is widest: on the land [mm]; inf without land."""
+        if math.isinf(self.root):
+            return math.inf if self.flank_angle else self.corner_s + self.corner_radius
+        flank = self.corner_s + self.corner_radius / math.cos(self.flank_angle)
+        return flank + (self.tip - self.corner_radius - self.root) * math.tan(self.flank_angle)
 
     def _tooth(self, x: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
         """Depth in one tooth at `x` >= 0 from its middle, and its derivatives by x and rho."""

@@ -87,7 +87,7 @@ def cut(
     )
     sweep = Sweep(tuple(DepthField(c, m, grid.hull_radius, grid.z_range) for c, m in tools))
     notes = [*_rubbing(blank, tools)]
-    if sweep.count == 0:
+    if sweep.passes == 0:
         return _uncut(blank, (*notes, "no edge ever swung past the blank: nothing was cut"))
     nodes = math.prod(grid.node_shape)
     if nodes > LARGEST_NODES:
@@ -126,7 +126,7 @@ def cut(
         remains=remains,
         method="general (cylindrical grid, dual contouring)",
         cell_mm=grid.cell_mm,
-        passes=sweep.count,
+        passes=sweep.passes,
         pairs=leaves.pairs,
         checked=len(errors),
         largest_error_um=float(errors.max(initial=0.0)) * 1e3,
@@ -198,8 +198,7 @@ def _off(sweep: Sweep, points: Floats, blank: Blank, rng: np.random.Generator) -
     inside = (r < blank.radius) & (r > 0.5 * blank.bore_mm) & (points[:, 2] > low) & (points[:, 2] < high)
     rows = np.flatnonzero(inside)
     chosen = rng.choice(rows, min(CHECKED, len(rows)), replace=False) if len(rows) else rows
-    passes = np.arange(sweep.count)
-    depth = [sweep.evaluate(np.broadcast_to(p, (len(passes), 3)), passes).depth.max() for p in points[chosen]]
+    depth = [sweep.unculled(point) for point in points[chosen]]
     if not np.isfinite(depth).all():
         raise PartError("the cut surface has points that no pass can have made")
     return np.abs(np.array(depth))

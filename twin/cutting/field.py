@@ -4,15 +4,19 @@ A pass is one edge swinging past the work. In it a point of the stock meets the 
 its depth in the edge's outline at that instant is the pass's field value, positive where the point is cut
 away. The removed stock is where the largest of all passes is positive; that largest value is the signed
 distance to the cut surface, but for the slow motion of the stock in the rake plane.
+
+A pass is made of *bites*: what one tooth of the edge, or the land between two, removes of it. Their outlines
+are convex, and that is what bounds rest on; the field of a pass is that of its deepest bite.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
-from twin.cutting.engagement import inner_radius
+from twin.cutting.engagement import StockCylinder, inner_radius
 from twin.cutting.meeting import Meeting, State
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passes import Passes, find_passes
@@ -52,16 +56,69 @@ class DepthField:
         samples = np.arange(rows.shape[1], dtype=float)
         at = [np.interp(self.passes.at, samples, row) for row in rows]
         self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
+        spread = self._spread(StockCylinder.around(motion.mount, stock_radius, stock_z))
+        teeth = cutter.profile.teeth(*spread)
+        has_land = math.isfinite(cutter.profile.root)
+        self._land = len(teeth)
+        self.bites: int = len(teeth) + has_land
+        """of a pass: the teeth that can reach the stock and, last, the land between them"""
+        pitch = cutter.profile.pitch if math.isfinite(cutter.profile.pitch) else 0.0
+        self._middle = np.append(teeth * pitch, 0.0)[: self.bites]
         gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < math.pi
         self._partial: NDArray[np.bool_] = np.asarray(gap.any(axis=1))
 
+    @property
+    def count(self) -> int:
+        """Number of bites."""
+        return self.passes.count * self.bites
+
+    def _spread(self, stock: StockCylinder) -> tuple[float, float]:
+        """Lowest and highest axial position of stock on the outlines of all passes."""
+        axis = self._basis[2]
+        reach = stock.radius * math.hypot(axis[0], axis[1])
+        ends = np.array([stock.z_low, stock.z_high]) * axis[2]
+        off = -axis @ self._seen[2:] - self.passes.shift
+        slack = reach + self.passes.travel
+        low, high = off + ends.min() - slack, off + ends.max() + slack
+        return float(low.min(initial=0.0)), float(high.max(initial=0.0))
+
     def evaluate(self, points: Floats, index: Ints, *, gradient: bool = False) -> Meeting:
         """Field of pass `index[i]` at `points[i]` (m, 3) in the part frame [mm]."""
+        return self._meeting(points, index, self.cutter.profile.depth, gradient=gradient)
+
+    def evaluate_bite(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
+        """As `evaluate`, for bites: depth in one tooth, or in the land between the teeth, alone.
+
+        Their outlines are convex, so their depths are concave; the field of a pass is its deepest bite's.
+        """
+        index = bite // self.bites
+
+        def outline(s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
+            number = bite - index * self.bites
+            depth = self.cutter.profile.tooth_depth(self._middle.take(number), s, rho)
+            land = np.flatnonzero(number == self._land)
+            if len(land):
+                depth[0][land] = self.cutter.profile.root - rho[land]
+                depth[1][land] = 0.0
+                depth[2][land] = -1.0
+            return depth
+
+        return self._meeting(points, index, outline, gradient=gradient)
+
+    def _meeting(
+        self,
+        points: Floats,
+        index: Ints,
+        outline: Callable[[Floats, Floats], tuple[Floats, Floats, Floats]],
+        *,
+        gradient: bool,
+    ) -> Meeting:
+        """Depth in an `outline` (s, rho) of the edges of passes `index`."""
         state, end, step = self._meet(points, index)
         s = state.s + state.s_rate * step
         rho = state.rho + state.rho_rate * step
-        outline = s - self.passes.shift.take(index)
-        depth, by_s, by_rho = self.cutter.profile.depth(outline, rho)
+        along = s - self.passes.shift.take(index)
+        depth, by_s, by_rho = outline(along, rho)
         if math.isfinite(self.cutter.half_length):
             off = s - self.cutter.shift
             inside = self.cutter.half_length - np.abs(off)
@@ -82,44 +139,38 @@ class DepthField:
             by_turn[partial] = np.where(ends, rate, 0.0)
             follows[partial] = met
         slope = self._gradient(state, by_s, by_rho, by_turn, follows) if gradient else np.zeros((0, 3))
-        return Meeting(depth, slope, outline, rho, end)
+        return Meeting(depth, slope, along, rho, end)
 
-    def floors(self, points: Floats, corners: Floats, index: Ints, radius: Floats) -> Floats:
-        """Lower bounds (c, m) of the passes' depths, in the convex hulls of `corners` (m, c, 3).
+    def floors(self, points: Floats, corners: Floats, bite: Ints, radius: Floats) -> Floats:
+        """Lower bounds (c, m) of the bites' depths, in the convex hulls of `corners` (m, c, 3).
 
-        At any convex combination of a pass's corners, its depth is at least the same combination of these.
-        For the depth in one tooth is concave in the rake plane, and the pass is at least as deep as the tooth
-        that the middle (m, 3) is nearest to; what the map to the rake plane bends within `radius` (m,) of
-        the middle counts twice, at the corners and inside.
+        At any convex combination of the corners, a bite's depth is at least the same combination of these:
+        it is concave in the rake plane, and what the map to the rake plane bends within `radius` (m,) of the
+        middle counts twice, at the corners and inside.
         """
-        middle = self.evaluate(points, index)
-        change, bent, _ = self.bound(middle, index, radius)
+        middle = self.evaluate_bite(points, bite)
+        change, bent = self.bound(middle, bite, radius)
         count = corners.shape[1]
-        each = np.repeat(index, count)
-        meeting = self.evaluate(corners.reshape(-1, 3), each)
-        tooth = np.repeat(self.cutter.profile.tooth(middle.s), count)
-        depth = self.cutter.profile.depth_in(tooth, meeting.s, meeting.rho)
-        off = meeting.s + self.passes.shift[each] - self.cutter.shift
-        depth = np.minimum(depth, self.cutter.half_length - np.abs(off))
+        depth = self.evaluate_bite(corners.reshape(-1, 3), np.repeat(bite, count)).depth
         floors = depth.reshape(-1, count).T - 2.0 * bent
         level = middle.depth - change
         return np.where(level > floors.mean(axis=0), level, floors)
 
-    def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats, Floats]:
-        """Proved bounds on the field within `radius` (m,) of the points of a meeting [mm].
+    def bound(self, meeting: Meeting, bite: Ints, radius: Floats) -> tuple[Floats, Floats]:
+        """Proved bounds on the depths of bites within `radius` (m,) of the points of a meeting [mm].
 
         Returns
         - change: how much the depth can change at most;
         - bent: how far the map from space to the rake plane departs from its tangent. With the depth of a
-          tooth concave in that plane, tangent + bent bounds the field from above, and a convex combination
-          of its values − 2 bent from below, but for
-        - excess: what a neighbouring tooth or the land can add to it.
+          bite concave in that plane, tangent + bent bounds the field from above, and a convex combination
+          of its values − 2 bent from below.
 
         Writing M(p) = G(p, t(p)) for the map and a for the edge's speed across the rake plane, slant = v/a,
         turn = C'/a: |G_pp| <= 1/rho, |G_pt| <= C' + v/rho, |G_tt| <= C'v + v²/rho, |t_p| <= 1/a and
         |t_pp| <= (1/rho + 2 (2 slant/rho + turn) + ...)/a, in sum (1 + slant)^4/rho + 2 (1 + slant)² turn.
         A velocity jump between two samples adds its share of the way that remains.
         """
+        index = bite // self.bites
         p = self.passes
         # no point of the block can meet the edge further in than this, if `change` is less than 2 radius
         low = np.maximum(meeting.rho - 2.0 * radius, 1e-6)
@@ -136,12 +187,11 @@ class DepthField:
         jolt = p.jolt.take(index) * slower * np.maximum(slower, 1.0)
         creep = p.creep.take(index)
         bent = 0.5 * curvature * radius * radius + jolt * radius * jumps + creep
-        excess = self.cutter.profile.takeover(meeting.s, meeting.rho, change)
         partial = self._partial.take(index)
         change = np.where(partial, radius * (1.0 + WIDEST + slant), change) + creep
         change[~proved] = np.inf
         bent[~proved | partial] = np.inf
-        return change, bent, excess
+        return change, bent
 
     def near(self, point: Floats, radius: float) -> Ints:
         """Passes whose tool may come within `radius` of a point (3,) of the part [mm]."""
@@ -152,6 +202,20 @@ class DepthField:
         z = local[2] - state[4]
         a, b, _ = self._basis @ np.stack([x, y, z])
         return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel)
+
+    def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:
+        """Rows and bites of the passes `index` (m,) that may cut within `radius` (m,) of `points` (m, 3)."""
+        meeting = self.evaluate(points, index)
+        change, _ = self.bound(meeting, index * self.bites, radius)
+        profile = self.cutter.profile
+        tall = np.flatnonzero(profile.tip - meeting.rho + change > 0)
+        beside = np.abs(meeting.s[tall, None] - self._middle) - change[tall, None]
+        within = beside < profile.half_width
+        if self._land < self.bites:
+            within[:, self._land] = profile.root - meeting.rho[tall] + change[tall] > 0
+        row, number = np.nonzero(within)
+        row = tall[row]
+        return row, index[row] * self.bites + number
 
     def _meet(self, points: Floats, index: Ints) -> tuple[State, Floats, Floats]:
         """The points near their meeting instants, those instants, and the step that is left to them."""

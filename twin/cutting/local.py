@@ -1,4 +1,4 @@
-"""What is known of each pass around a block's middle: its tangent there, and how far it can rise above it."""
+"""What is known of each bite around a block's middle: its tangent there, and how far it can rise above it."""
 
 from dataclasses import dataclass
 
@@ -17,14 +17,14 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Tangents:
-    """For each block the passes that can be the deepest in it, with upper bounds on their depths.
+    """For each block the bites that can be the deepest in it, with upper bounds on their depths.
 
-    Within `radius` of `middle` the depth of a pass is at most `plane[0] + plane[1:] · (p − middle) + over`
+    Within `radius` of `middle` the depth of a bite is at most `plane[0] + plane[1:] · (p − middle) + over`
     (`DepthField.bound`).
     """
 
     lists: Candidates
-    """the passes of each block"""
+    """the bites of each block"""
     middle: Floats
     """(n, 3) of the blocks [mm]"""
     radius: Floats
@@ -39,7 +39,7 @@ class Tangents:
         pairs = self.lists.pairs(items)
         start = np.concatenate([[0], np.cumsum(np.diff(self.lists.start)[items])])
         return Tangents(
-            Candidates(start, self.lists.passes.take(pairs)),
+            Candidates(start, self.lists.bites.take(pairs)),
             self.middle[items],
             self.radius[items],
             self.plane.take(pairs, axis=1),
@@ -47,8 +47,8 @@ class Tangents:
         )
 
 
-def without_passes(middle: Floats) -> Tangents:
-    """Blocks without passes."""
+def without_bites(middle: Floats) -> Tangents:
+    """Blocks without bites."""
     n = len(middle)
     lists = Candidates(np.zeros(n + 1, dtype=np.int64), np.zeros(0, dtype=np.int64))
     return Tangents(lists, middle, np.zeros(n), np.zeros((4, 0)), np.zeros(0))

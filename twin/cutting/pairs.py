@@ -1,4 +1,4 @@
-"""Ragged lists of pairs (item, pass), and work on them in batches that fit the cache."""
+"""Ragged lists of pairs (item, bite), and work on them in batches that fit the cache."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -22,12 +22,12 @@ LISTED = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """For each item the passes that may be the deepest one there."""
+    """For each item the bites that may be the deepest one there."""
 
     start: Ints
-    """(n + 1,) where each item's list begins in `passes`"""
-    passes: Ints
-    """(m,) pass numbers"""
+    """(n + 1,) where each item's list begins in `bites`"""
+    bites: Ints
+    """(m,) bite numbers"""
 
     @property
     def count(self) -> int:
@@ -41,10 +41,10 @@ class Candidates:
     def of(self, items: Ints) -> "Candidates":
         """The lists of some items, in their order; an item may come more than once."""
         start = np.concatenate([[0], np.cumsum(np.diff(self.start)[items])])
-        return Candidates(start, self.passes[self.pairs(items)])
+        return Candidates(start, self.bites[self.pairs(items)])
 
     def pairs(self, items: Ints) -> Ints:
-        """Where the pairs of some items stand in `passes`, in the items' order."""
+        """Where the pairs of some items stand in `bites`, in the items' order."""
         length = np.diff(self.start)[items]
         end = np.cumsum(length)
         # self.start of the item, plus the position in its list
@@ -55,7 +55,7 @@ class Candidates:
     def where(self, keep: NDArray[np.bool_]) -> "Candidates":
         """The lists without the pairs that are not kept (m,)."""
         kept = np.concatenate([[0], np.cumsum(keep)])
-        return Candidates(kept[self.start], self.passes[keep])
+        return Candidates(kept[self.start], self.bites[keep])
 
 
 def join(parts: list[Candidates]) -> Candidates:
@@ -63,7 +63,7 @@ def join(parts: list[Candidates]) -> Candidates:
     if not parts:
         return Candidates(np.zeros(1, dtype=np.int64), np.zeros(0, dtype=np.int64))
     lengths = np.concatenate([np.diff(p.start) for p in parts])
-    return Candidates(np.concatenate([[0], np.cumsum(lengths)]), np.concatenate([p.passes for p in parts]))
+    return Candidates(np.concatenate([[0], np.cumsum(lengths)]), np.concatenate([p.bites for p in parts]))
 
 
 def batches(start: Ints, size: int = BATCH) -> Iterator[slice]:

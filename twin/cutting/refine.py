@@ -1,11 +1,11 @@
-"""Where the cut surface runs, and which passes can make it there.
+"""Where the cut surface runs, and which bites can make it there.
 
-Blocks of the grid are halved from coarse to fine. A tooth is convex, so the depth of a pass is concave in its
+Blocks of the grid are halved from coarse to fine. A bite is convex, so its depth is concave in its
 rake plane: its tangent bounds it from above, its corner values from below (`DepthField.bound` adds what the
-map to the rake plane bends). One pass, the block's judge, is evaluated at the corners. The others are
+map to the rake plane bends). One bite, the block's judge, is evaluated at the corners. The others are
 held against it by the tangents that the parent block had, which hold in its children too; what then has a
 chance is evaluated at the block's own middle and held against it once more. That decides: a block that the
-judge removes whole, a block that no pass touches, or a block to halve, with the passes that can be the
+judge removes whole, a block that no bite touches, or a block to halve, with the bites that can be the
 deepest in it.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.grid import BLOCK, Grid
-from twin.cutting.local import ROUNDING, Tangents, can_matter, joined, without_passes
+from twin.cutting.local import ROUNDING, Tangents, can_matter, joined, without_bites
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, leaders
 from twin.cutting.sweep import Sweep
 
@@ -36,11 +36,11 @@ class Leaves:
     low: Ints
     """(n, 3) lowest cell of each block"""
     tangents: Tangents
-    """of the passes of each block, its edges included"""
+    """of the bites of each block, its edges included"""
     removed: list[tuple[Ints, int]]
     """(low (m, 3), size) of the blocks that are cut away whole"""
     pairs: int
-    """pairs of block and pass that were evaluated"""
+    """pairs of block and bite that were evaluated"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +52,9 @@ class Culled:
     alive: Ints
     """(a,) which of them the surface may pass"""
     tangents: Tangents
-    """of the passes that can matter, for each of `alive`"""
+    """of the bites that can matter, for each of `alive`"""
     pairs: int
-    """pairs of block and pass that were evaluated"""
+    """pairs of block and bite that were evaluated"""
 
 
 def refine(sweep: Sweep, grid: Grid) -> Leaves:
@@ -82,14 +82,14 @@ def refine(sweep: Sweep, grid: Grid) -> Leaves:
         done = cull(sweep, *grid.hulls(low, size), parent[inside], tangents)
         pairs += done.pairs
     shut = np.concatenate(closing)
-    tangents = joined([tangents, without_passes(grid.hulls(shut, LEAF)[0])])
+    tangents = joined([tangents, without_bites(grid.hulls(shut, LEAF)[0])])
     return Leaves(np.concatenate([low, shut]), tangents, removed, pairs)
 
 
 def _closing(grid: Grid, low: Ints, size: int) -> Ints:
     """The leaves (m, 3) of removed blocks that the closing faces of the removed solid run through.
 
-    No pass makes those faces: the leaves need none.
+    No bite makes those faces: the leaves need none.
     """
     nr, _, nz = grid.cells
     low = low[_outermost(grid, low, size)]
@@ -116,8 +116,8 @@ def first_cull(sweep: Sweep, middle: Floats, corners: Floats) -> Culled:
     def work(part: slice) -> Culled:
         items = some[part]
         own = lists.of(np.arange(part.start, part.stop))
-        depth = sweep.evaluate(middle[items[own.owner()]], own.passes).depth
-        judge = own.passes[leaders(depth, own.start)[1]]
+        depth = sweep.evaluate(middle[items[own.owner()]], own.bites).depth
+        judge = own.bites[leaders(depth, own.start)[1]]
         floors = sweep.floors(middle[items], corners[items], judge, _radius(middle[items], corners[items]))
         return _judged(sweep, middle[items], corners[items], own, floors)
 
@@ -125,7 +125,7 @@ def first_cull(sweep: Sweep, middle: Floats, corners: Floats) -> Culled:
 
 
 def cull(sweep: Sweep, middle: Floats, corners: Floats, parent: Ints, tangents: Tangents) -> Culled:
-    """Cull the passes of blocks with these middles (n, 3) and corners of their hulls (n, 8, 3).
+    """Cull the bites of blocks with these middles (n, 3) and corners of their hulls (n, 8, 3).
 
     `tangents` are those of their parent blocks, `parent` (n,) tells which.
     """
@@ -138,7 +138,7 @@ def cull(sweep: Sweep, middle: Floats, corners: Floats, parent: Ints, tangents: 
         owner = above.lists.owner()
         way = np.ascontiguousarray((middle[items] - above.middle).T)
         height = above.plane[0] + (above.plane[1:] * way.take(owner, axis=1)).sum(axis=0)
-        judge = above.lists.passes[leaders(height, above.lists.start)[1]]
+        judge = above.lists.bites[leaders(height, above.lists.start)[1]]
         floors = sweep.floors(middle[items], corners[items], judge, _radius(middle[items], corners[items]))
         outside = _radius(above.middle, corners[items]) > above.radius * (1.0 + ROUNDING)
         spokes = _spokes(above.middle, corners[items])
@@ -155,10 +155,9 @@ def _judged(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates, fl
     middle, corners, lists = middle[rest], corners[rest], lists.of(rest)
     radius = _radius(middle, corners)
     owner = lists.owner()
-    meeting = sweep.evaluate(middle.take(owner, axis=0), lists.passes, gradient=True)
-    change, bent, excess = sweep.bound(meeting, lists.passes, radius[owner])
+    meeting = sweep.evaluate(middle.take(owner, axis=0), lists.bites, gradient=True)
+    change, over = sweep.bound(meeting, lists.bites, radius[owner])
     plane = np.vstack([meeting.depth, meeting.gradient.T])
-    over = bent + excess
     keep = can_matter(plane, over, owner, _spokes(middle, corners), floors[:, rest])
     keep &= meeting.depth + change > 0
     rows = np.flatnonzero(keep)
@@ -179,7 +178,7 @@ def _gathered(count: int, items: Ints, start: Ints, work: Callable[[slice], Cull
     return Culled(
         whole,
         np.concatenate(alive),
-        joined([without_passes(np.zeros((0, 3))), *(culled.tangents for culled in done)]),
+        joined([without_bites(np.zeros((0, 3))), *(culled.tangents for culled in done)]),
         sum(culled.pairs for culled in done),
     )
 

@@ -1,4 +1,4 @@
-"""All tools' depth fields as one: their passes numbered through."""
+"""All tools' depth fields as one: their bites numbered through."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,37 +17,46 @@ class Sweep:
 
     def __init__(self, fields: tuple[DepthField, ...]) -> None:
         self.fields = fields
-        counts = [f.passes.count for f in fields]
+        counts = [f.count for f in fields]
         self._first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
 
     @property
-    def count(self) -> int:
+    def passes(self) -> int:
         """Number of passes."""
-        return int(self._first[-1])
+        return sum(f.passes.count for f in self.fields)
 
-    def evaluate(self, points: Floats, index: Ints, *, gradient: bool = False) -> Meeting:
-        """As `DepthField.evaluate`, for passes of any tool."""
+    def unculled(self, point: Floats) -> float:
+        """Largest depth of all passes at a point (3,), every one of them evaluated [mm]."""
+        depth = -np.inf
+        for f in self.fields:
+            n = f.passes.count
+            found = f.evaluate(np.broadcast_to(point, (n, 3)), np.arange(n)).depth
+            depth = max(depth, float(found.max(initial=-np.inf)))
+        return depth
+
+    def evaluate(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
+        """As `DepthField.evaluate_bite`, for bites of any tool."""
         if len(self.fields) == 1:
-            return self.fields[0].evaluate(points, index, gradient=gradient)
-        parts = [
-            (here, f.evaluate(points[here], index[here] - self._first[n], gradient=gradient))
+            return self.fields[0].evaluate_bite(points, bite, gradient=gradient)
+        pieces = [
+            (here, f.evaluate_bite(points[here], bite[here] - self._first[n], gradient=gradient))
             for n, f in enumerate(self.fields)
-            if (here := self._of(n, index)).any()
+            if (here := self._of(n, bite)).any()
         ]
         m = len(points)
         out = Meeting(np.zeros(m), np.zeros((m if gradient else 0, 3)), *(np.zeros(m) for _ in range(3)))
-        for here, part in parts:
+        for here, piece in pieces:
             for name in ("depth", "s", "rho", "instant"):
-                getattr(out, name)[here] = getattr(part, name)
+                getattr(out, name)[here] = getattr(piece, name)
             if gradient:
-                out.gradient[here] = part.gradient
+                out.gradient[here] = piece.gradient
         return out
 
-    def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats, Floats]:
-        """As `DepthField.bound`, for passes of any tool."""
+    def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats]:
+        """As `DepthField.bound`, for bites of any tool."""
         if len(self.fields) == 1:
             return self.fields[0].bound(meeting, index, radius)
-        out = (np.zeros(len(index)), np.zeros(len(index)), np.zeros(len(index)))
+        out = (np.zeros(len(index)), np.zeros(len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
             part = Meeting(
@@ -60,7 +69,7 @@ class Sweep:
         return out
 
     def floors(self, points: Floats, corners: Floats, index: Ints, radius: Floats) -> Floats:
-        """As `DepthField.floors`, for passes of any tool."""
+        """As `DepthField.floors`, for bites of any tool."""
         out = np.zeros((corners.shape[1], len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
@@ -68,21 +77,26 @@ class Sweep:
         return out
 
     def near(self, points: Floats, radius: Floats) -> Candidates:
-        """Passes whose tool may come within `radius` (n,) of each point (n, 3)."""
-        found = [
-            [f.near(p, r) + self._first[n] for n, f in enumerate(self.fields)]
-            for p, r in zip(points, radius, strict=True)
-        ]
-        return join([Candidates(np.array([0, len(row)]), row) for row in (np.concatenate(f) for f in found)])
+        """Bites that may cut within `radius` (n,) of points (n, 3)."""
+        found = []
+        for point, r in zip(points, radius, strict=True):
+            parts = []
+            for n, f in enumerate(self.fields):
+                index = f.near(point, r)
+                at = np.broadcast_to(point, (len(index), 3))
+                parts.append(f.bites_near(at, index, np.full(len(index), r))[1] + self._first[n])
+            row = np.concatenate(parts)
+            found.append(Candidates(np.array([0, len(row)]), row))
+        return join(found)
 
     def deepest(
         self, points: Floats, block: Ints, tangents: Tangents, *, gradient: bool = False, sign: bool = False
     ) -> tuple[Floats, Floats]:
-        """Largest depth (n,) over the passes of each point's `block`, and its gradient.
+        """Largest depth (n,) over the bites of each point's `block`, and its gradient.
 
-        The pass whose tangent stands highest is evaluated, and then those whose upper bound is above it.
+        The bite whose tangent stands highest is evaluated, and then those whose upper bound is above it.
         Where only the `sign` is asked for, it comes with a depth that is about right. A point without
-        passes has depth −inf.
+        bites has depth −inf.
         """
         depth = np.full(len(points), -np.inf)
         slope = np.zeros((len(points) if gradient else 0, 3))
@@ -106,7 +120,7 @@ class Sweep:
             out = np.einsum("nx,nx->n", way, way) > (tangents.radius[own] * (1.0 + ROUNDING)) ** 2
             if out.any():
                 upper[out[owner]] = np.inf
-            best = self.evaluate(points[items], lists.passes[pairs[first]], gradient=gradient)
+            best = self.evaluate(points[items], lists.bites[pairs[first]], gradient=gradient)
             floor = best.depth
             if gradient:
                 slope[items] = best.gradient
@@ -118,7 +132,7 @@ class Sweep:
             rivals = np.flatnonzero(rivals)
             if len(rivals):
                 who = owner[rivals]
-                other = self.evaluate(points[items[who]], lists.passes[pairs[rivals]], gradient=gradient)
+                other = self.evaluate(points[items[who]], lists.bites[pairs[rivals]], gradient=gradient)
                 start = np.concatenate([[0], np.flatnonzero(np.diff(who)) + 1, [len(who)]])
                 deepest, at = leaders(other.depth, start)
                 who = who[start[:-1]]

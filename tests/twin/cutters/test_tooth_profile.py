@@ -96,16 +96,12 @@ def test_depth_of_one_tooth_is_concave(profile):
     assert (single.depth(*middle)[0] >= lowest - 1e-12).all()
 
 
-def test_takeover_bounds_what_rises_above_the_tangent(profile):
-    here = cloud(profile, 20_000)
-    rng = np.random.default_rng(2)
-    reach = 10.0 ** rng.uniform(-3.0, 1.0, here.shape[1])
-    turn = rng.uniform(0.0, 2.0 * math.pi, here.shape[1])
-    step = reach * rng.uniform(0.0, 1.0, here.shape[1]) * np.array([np.cos(turn), np.sin(turn)])
-    depth, by_s, by_rho = profile.depth(*here)
-    tangent = depth + by_s * step[0] + by_rho * step[1]
-    above = profile.depth(*(here + step))[0] - tangent
-    assert (above <= profile.takeover(*here, reach) + 1e-12).all()
+def test_depth_is_that_of_the_deepest_tooth_or_the_land(profile):
+    s, rho = cloud(profile, 20_000)
+    middles = profile.teeth(s.min(), s.max()) * (profile.pitch if math.isfinite(profile.pitch) else 0.0)
+    teeth = [profile.tooth_depth(middle, s, rho) for middle in middles]
+    deepest = np.max([depth for depth, _, _ in teeth] + [profile.root - rho], axis=0)
+    np.testing.assert_allclose(profile.depth(s, rho)[0], deepest, atol=1e-12)
 
 
 def test_derivatives_are_the_slope_of_the_depth(profile):

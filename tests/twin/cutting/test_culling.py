@@ -29,6 +29,13 @@ def all_depths(field, points):
     return field.evaluate(np.repeat(points, n, axis=0), index).depth.reshape(len(points), n)
 
 
+def bite_depths(field, points, bites):
+    """(points, bites)"""
+    n = len(bites)
+    depth = field.evaluate_bite(np.repeat(points, n, axis=0), np.tile(bites, len(points))).depth
+    return depth.reshape(len(points), n)
+
+
 @few
 @given(cut=cuts, seed=st.integers(0, 1000))
 def test_culling_keeps_the_deepest_pass(cut, seed):
@@ -60,25 +67,26 @@ def test_culling_keeps_the_deepest_pass(cut, seed):
                 assert not cut_away.any()
                 break
             tangents = done.tangents
-            left = tangents.lists.passes
-            survivors = depth[:, left].max(axis=1)
-            assert (survivors[cut_away] == deepest[cut_away]).all()
-            # the tangents bound their passes from above in the whole ball, and tell the deepest
+            left = tangents.lists.bites
+            depth = bite_depths(field, points, left)
+            survivors = depth.max(axis=1)
+            assert survivors[cut_away] == pytest.approx(deepest[cut_away], abs=1e-12)
+            # the tangents bound their bites from above in the whole ball, and tell the deepest
             ball = rng.standard_normal((16, 3))
             ball *= rng.uniform(0.0, tangents.radius) / np.linalg.norm(ball, axis=1, keepdims=True)
             level, slope = tangents.plane[0], tangents.plane[1:]
             bound = level + ball @ slope + tangents.over
-            assert (all_depths(field, middle + ball)[:, left] <= bound + 1e-7).all()
+            assert (bite_depths(field, middle + ball, left) <= bound + 1e-7).all()
             home = np.zeros(len(points), dtype=int)
             value, gradient = sweep.deepest(points, home, tangents, gradient=True)
             assert value == pytest.approx(survivors, abs=1e-7)
-            best = left[depth[:, left].argmax(axis=1)]
-            # where one pass alone is the deepest, and on neither side of a corner of its edge
-            single = (depth[:, left] > survivors[:, None] - 1e-6).sum(axis=1) == 1
-            expected = field.evaluate(points, best, gradient=True).gradient
+            best = left[depth.argmax(axis=1)]
+            # where one bite alone is the deepest, and on neither side of a corner of its edge
+            single = (depth > survivors[:, None] - 1e-6).sum(axis=1) == 1
+            expected = field.evaluate_bite(points, best, gradient=True).gradient
             step = 1e-6 * rng.standard_normal(points.shape)
             for way in (-1.0, 1.0):
-                beside = field.evaluate(points + way * step, best, gradient=True).gradient
+                beside = field.evaluate_bite(points + way * step, best, gradient=True).gradient
                 single &= np.abs(beside - expected).max(axis=1) < 1e-4
             assert gradient[single] == pytest.approx(expected[single], abs=1e-6)
             signs, _ = sweep.deepest(points, home, tangents, sign=True)
@@ -94,10 +102,12 @@ def test_no_pass_that_cuts_is_left_out_at_the_start(cut, seed):
     points = cut.points(20, seed)
     everything = DepthField(cut.cutter, cut.motion, 1.01 * cut.radii[1], (-1e4, 1e4))
     expected = all_depths(everything, points).max(axis=1, initial=-np.inf)
-    near = Sweep((field,)).near(points, np.zeros(len(points)))
+    near = Sweep((field,)).near(points, np.full(len(points), 1e-6))
     for point, all_of_them, row in zip(points, expected, range(len(points)), strict=True):
-        mine = near.of(np.array([row])).passes
-        found = field.evaluate(np.repeat(point[None], len(mine), axis=0), mine).depth.max(initial=-np.inf)
+        mine = near.of(np.array([row])).bites
+        found = field.evaluate_bite(np.repeat(point[None], len(mine), axis=0), mine).depth.max(
+            initial=-np.inf
+        )
         if all_of_them > 0:
             assert found == pytest.approx(all_of_them, abs=1e-8)
         else:

@@ -71,16 +71,28 @@ def test_bounds_hold_around_a_point(cut, seed):
     rng = np.random.default_rng(seed)
     n = 400
     points = cut.points(n, seed)
-    passes = rng.integers(0, field.passes.count, n)
+    bites = rng.integers(0, field.count, n)
     radius = cut.feature * 10.0 ** rng.uniform(-2.5, 0.0, n)
     step = rng.standard_normal((n, 3))
     step *= (radius * rng.uniform(0.0, 1.0, n) / np.linalg.norm(step, axis=1))[:, None]
-    here = field.evaluate(points, passes, gradient=True)
-    there = field.evaluate(points + step, passes)
-    change, bent, excess = field.bound(here, passes, radius)
+    here = field.evaluate_bite(points, bites, gradient=True)
+    there = field.evaluate_bite(points + step, bites)
+    change, bent = field.bound(here, bites, radius)
     assert (np.abs(there.depth - here.depth) <= change + 1e-9).all()
     tangent = here.depth + (here.gradient * step).sum(axis=1)
-    assert (there.depth <= tangent + bent + excess + 1e-9).all()
+    assert (there.depth <= tangent + bent + 1e-9).all()
+
+
+@few
+@given(cut=cuts, seed=st.integers(0, 1000))
+def test_a_pass_is_as_deep_as_its_deepest_bite(cut, seed):
+    field = cut.field()
+    points = cut.points(20, seed)
+    for index in np.random.default_rng(seed).integers(0, field.passes.count, 5):
+        whole = field.evaluate(points, np.full(len(points), index)).depth
+        each = np.tile(index * field.bites + np.arange(field.bites), len(points))
+        bites = field.evaluate_bite(np.repeat(points, field.bites, axis=0), each).depth
+        assert bites.reshape(len(points), -1).max(axis=1) == pytest.approx(whole, abs=1e-9)
 
 
 @pytest.mark.parametrize("tremble", [0.0, 1e-9, 1e-7, 1e-6])

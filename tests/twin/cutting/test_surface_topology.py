@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from twin.cutting.crossings import Crossings, edge_key, leaf_cells
 from twin.cutting.dual import Cells, _quads
 from twin.cutting.grid import Grid
-from twin.cutting.local import without_passes
+from twin.cutting.local import without_bites
 from twin.cutting.refine import LEAF, Leaves
 from twin.cutting.stock import solid
 from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS
@@ -61,7 +61,7 @@ def mesh_of(removed):
     low = np.stack(np.meshgrid(*(np.arange(0, n, LEAF) for n in grid.cells), indexing="ij"), axis=-1).reshape(
         -1, 3
     )
-    leaves = Leaves(low, without_passes(np.zeros((len(low), 3))), [], 0)
+    leaves = Leaves(low, without_bites(np.zeros((len(low), 3))), [], 0)
     cell, case, leaf = leaf_cells(grid, leaves, np.where(removed, 1.0, -1.0))
     keys, rising = [], []
     for axis in range(3):
