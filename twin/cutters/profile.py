@@ -72,7 +72,7 @@ class ToothProfile:
         return depth, g_x, g_y
 
     def teeth(self, low: float, high: float) -> NDArray[np.int64]:
-        """Numbers of the teeth that reach between two axial positions above the land; tooth k is at k pitches."""
+        """Numbers of the teeth, tooth k at k pitches, that reach between two positions above the land."""
         if math.isinf(self.pitch):
             return np.zeros(1, dtype=np.int64)
         first = math.ceil((low - self.half_width) / self.pitch)
