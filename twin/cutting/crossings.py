@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from twin.cutting.grid import Grid, cartesian
 from twin.cutting.refine import LEAF, Leaves
-from twin.cutting.sweep import Sweep
+from twin.cutting.sweep import Deepest, Sweep
 from twin.cutting.topology import CORNERS
 
 Floats = NDArray[np.float64]
@@ -30,6 +30,8 @@ class Crossings:
     """(n, 3) [mm]"""
     normal: Floats
     """(n, 3) unit, into the material"""
+    bite: Ints
+    """(n,) that made the surface there; −1 where the removed solid is closed in the air"""
     rising: Bools
     """(n,) whether the lower node is the removed one"""
 
@@ -50,7 +52,7 @@ def node_depths(sweep: Sweep, grid: Grid, leaves: Leaves) -> Floats:
             flat[grid.node_id(i[:, :, None, None], j[:, None, :, None], k[:, None, None, :])] = 1.0
     node, block = _owned(leaves)
     point = grid.points(node[:, 0], node[:, 1] % grid.sectors, node[:, 2])
-    value, _ = sweep.deepest(point, block, leaves.tangents, sign=True)
+    value = sweep.deepest(point, block, leaves.tangents, sign=True).depth
     ids = grid.node_id(*node.T)
     # a node of a neighbouring block that is removed whole is known already
     flat[ids] = np.where(flat[ids] == 1.0, 1.0, np.maximum(value, -1.0))
@@ -109,12 +111,13 @@ def find_crossings(sweep: Sweep, grid: Grid, leaves: Leaves, depth: Floats) -> C
     cut = np.flatnonzero(~closing)
     leaf = block[owner[cut]]
 
-    def field(points: Floats, rows: Ints) -> tuple[Floats, Floats]:
+    def field(points: Floats, rows: Ints) -> Deepest:
         return sweep.deepest(points, leaf[rows], leaves.tangents, gradient=True)
 
-    point[cut], normal[cut] = _solve(field, edge, cut, (here[owner[cut]], there[cut]))
+    bite = np.full(len(key), -1)
+    point[cut], normal[cut], bite[cut] = _solve(field, edge, cut, (here[owner[cut]], there[cut]))
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    return Crossings(key, point, normal, rising)
+    return Crossings(key, point, normal, bite, rising)
 
 
 def _closing(grid: Grid, node: Ints, axis: Ints) -> Bools:
@@ -156,14 +159,14 @@ class _Edges:
 
 
 def _solve(
-    field: Callable[[Floats, Ints], tuple[Floats, Floats]],
+    field: Callable[[Floats, Ints], Deepest],
     edge: _Edges,
     rows: Ints,
     ends: tuple[Floats, Floats],
-) -> tuple[Floats, Floats]:
-    """Points and normals of some edges, by Newton's method kept between a removed and a kept point.
+) -> tuple[Floats, Floats, Ints]:
+    """Points, normals and bites of some edges, by Newton's method kept between a removed and a kept point.
 
-    `field` tells depth and gradient at points, each on the edge rows[i] for one i.
+    `field` tells the deepest bite at points, each on the edge rows[i] for one i.
     """
     here, there = ends
     n = len(here)
@@ -174,12 +177,14 @@ def _solve(
     t = np.clip(t, 0.02, 0.98)
     low, high = np.zeros(n), np.ones(n)
     normal = np.zeros((n, 3))
+    bite = np.zeros(n, dtype=np.int64)
     left = np.arange(n)
     for _ in range(ROUNDS):
         guess = t[left]
         point, along = edge.at(rows[left], guess)
-        value, slope = field(point, left)
-        normal[left] = -slope
+        found = field(point, left)
+        value, slope = found.depth, found.gradient
+        normal[left], bite[left] = -slope, found.bite
         short = (value > 0) == rising[left]
         low[left] = np.where(short, guess, low[left])
         high[left] = np.where(short, high[left], guess)
@@ -191,4 +196,4 @@ def _solve(
         left = left[np.abs(new - guess) * np.linalg.norm(along, axis=1) > ROOT_TOLERANCE]
         if not len(left):
             break
-    return edge.at(rows, t)[0], normal
+    return edge.at(rows, t)[0], normal, bite

@@ -1,7 +1,7 @@
 """Dual contouring: one vertex per sheet of the surface in a cell, one quadrilateral per crossed edge.
 
 T. Ju et al., Dual contouring of Hermite data, 2002; vertices of smooth cells are then brought onto the cut
-surface exactly, those of sharp ones stand where the tangent planes meet.
+surface exactly, those of ridges and edges onto all the bites that meet there.
 """
 
 import math
@@ -19,9 +19,11 @@ from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS, edge_at
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+FEATURE = 3e-5
+"""Share of an eigenvalue of the normals' scatter above which planes are taken to meet in that direction: more
+than about 0.6° apart, as feed marks and generating flats are."""
 SHARP = 0.03
-"""Share of an eigenvalue of the normals' scatter above which a direction is an edge of its own: tangent
-planes more than about 20° apart. Feed marks and generating flats meet at a few degrees: they are surface."""
+"""The same for an edge, where planes are more than about 20° apart."""
 MARGIN = 0.05
 """Share of a cell by which a vertex may stand outside its own."""
 
@@ -52,52 +54,83 @@ class Cells:
 def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings) -> Surface:
     """Mesh of the cut surface."""
     first = np.concatenate([[0], np.cumsum(SHEETS[cells.case])])
-    vertices, normals, sharp = _fit(grid, cells, crossings, first)
-    cell = np.repeat(np.arange(len(cells.case)), SHEETS[cells.case])
-    smooth = np.flatnonzero(~sharp)
-    leaf = cells.leaf[cell[smooth]]
-    vertices[smooth] = _onto_surface(sweep, vertices[smooth], leaf, cells.tangents, min(grid.cell_mm))
+    sheets = _Sheets.of(grid, cells, crossings, first)
+    vertices, normals, spread = _fit(grid, cells, crossings, sheets)
+    longest = 0.5 * min(grid.cell_mm)
+    vertices = _onto_edges(sweep, vertices, spread > FEATURE, sheets, longest)
+    smooth = np.flatnonzero(spread < SHARP)
+    leaf = cells.leaf[sheets.cell[smooth]]
+    vertices[smooth] = _onto_surface(sweep, vertices[smooth], leaf, cells.tangents, longest)
     quads = _quads(grid, cells, crossings, first)
     return Surface(vertices, _triangles(vertices, normals, quads))
 
 
-def _fit(
-    grid: Grid, cells: Cells, crossings: Crossings, first: Ints
-) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Vertices (n, 3) where the tangent planes of each sheet's crossings meet best, normals, sharpness."""
-    rows, owners = [], []
-    for number, (axis, low, _) in enumerate(EDGES):
-        sheet = SHEET[cells.case, number]
-        here = np.flatnonzero(sheet >= 0)
-        rows.append(np.searchsorted(crossings.key, edge_key(grid, axis, cells.low[here] + CORNERS[low])))
-        owners.append(first[here] + sheet[here])
-    row, owner = np.concatenate(rows), np.concatenate(owners)
-    n = first[-1]
-    p, q = crossings.point[row], crossings.normal[row]
+@dataclass(frozen=True, slots=True)
+class _Sheets:
+    """The sheets of the surface in the cells, and the crossings on the border of each."""
 
-    def total(values: Floats) -> Floats:
-        return np.asarray(np.bincount(owner, values, minlength=n), dtype=np.float64)
+    cell: Ints
+    """(n,) row of each sheet's cell"""
+    owner: Ints
+    """(m,) sheet of each pair of sheet and crossing"""
+    row: Ints
+    """(m,) its crossing"""
+    bite: Ints
+    """(m,) what made the surface there, −1 = nothing"""
 
-    count = total(np.ones(len(row)))
-    middle = np.stack([total(p[:, x]) for x in range(3)], axis=1) / count[:, None]
-    normal = np.stack([total(q[:, x]) for x in range(3)], axis=1)
+    @staticmethod
+    def of(grid: Grid, cells: Cells, crossings: Crossings, first: Ints) -> "_Sheets":
+        """`first` (n + 1,) counts the sheets of the cells before each cell."""
+        rows, owners = [], []
+        for number, (axis, low, _) in enumerate(EDGES):
+            sheet = SHEET[cells.case, number]
+            here = np.flatnonzero(sheet >= 0)
+            rows.append(np.searchsorted(crossings.key, edge_key(grid, axis, cells.low[here] + CORNERS[low])))
+            owners.append(first[here] + sheet[here])
+        cell = np.repeat(np.arange(len(cells.case)), SHEETS[cells.case])
+        row = np.concatenate(rows)
+        return _Sheets(cell, np.concatenate(owners), row, crossings.bite[row])
+
+
+def _fit(grid: Grid, cells: Cells, crossings: Crossings, sheets: _Sheets) -> tuple[Floats, Floats, Floats]:
+    """Vertices (n, 3) where the tangent planes of each sheet's crossings meet best, normals, and how far
+    the planes differ (n,), in terms of FEATURE and SHARP."""
+    owner, n = sheets.owner, len(sheets.cell)
+    p, q = crossings.point[sheets.row], crossings.normal[sheets.row]
+    count = _totals(owner, np.ones(len(owner)), n)
+    middle = np.stack([_totals(owner, p[:, x], n) for x in range(3)], axis=1) / count[:, None]
+    normal = np.stack([_totals(owner, q[:, x], n) for x in range(3)], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     height = np.einsum("nx,nx->n", q, p - middle[owner])
+    shift, values = _meet(owner, q, height, n)
+    spread = values[:, 1] / np.maximum(values[:, 2], 1e-12)
+    vertices = middle + shift
+    # a vertex that leaves its cell may fold the mesh: fall back to the middle of the crossings
+    out = ~_free(grid, cells.low, cells.low[sheets.cell], vertices)
+    vertices[out] = middle[out]
+    spread[out] = 0.0
+    return vertices, normal, spread
+
+
+def _totals(owner: Ints, values: Floats, n: int) -> Floats:
+    """(n,) sums of `values` over what each owner has."""
+    return np.asarray(np.bincount(owner, values, minlength=n), dtype=np.float64)
+
+
+def _meet(owner: Ints, normal: Floats, height: Floats, n: int) -> tuple[Floats, Floats]:
+    """Least shifts (n, 3) to where planes meet best, and eigenvalues (n, 3) of their normals' scatter.
+
+    Owner i's planes are `normal · shift = height`. Directions whose eigenvalue is below FEATURE of the
+    largest are left alone.
+    """
     scatter = np.empty((n, 3, 3))
     for x in range(3):
         for y in range(x, 3):
-            scatter[:, x, y] = scatter[:, y, x] = total(q[:, x] * q[:, y])
-    pull = np.stack([total(q[:, x] * height) for x in range(3)], axis=1)
+            scatter[:, x, y] = scatter[:, y, x] = _totals(owner, normal[:, x] * normal[:, y], n)
+    pull = np.stack([_totals(owner, normal[:, x] * height, n) for x in range(3)], axis=1)
     values, vectors = np.linalg.eigh(scatter)
-    inverse = np.where(values > SHARP * values[:, 2:], 1.0 / np.maximum(values, 1e-12), 0.0)
-    shift = np.einsum("nxe,ne,nye,ny->nx", vectors, inverse, vectors, pull)
-    sharp = values[:, 1] > SHARP * values[:, 2]
-    vertices = middle + shift
-    # a vertex that leaves its cell may fold the mesh: fall back to the middle of the crossings
-    cell = np.repeat(np.arange(len(cells.case)), SHEETS[cells.case])
-    out = ~_free(grid, cells.low, cells.low[cell], vertices)
-    vertices[out] = middle[out]
-    return vertices, normal, sharp & ~out
+    inverse = np.where(values > FEATURE * values[:, 2:], 1.0 / np.maximum(values, 1e-12), 0.0)
+    return np.einsum("nxe,ne,nye,ny->nx", vectors, inverse, vectors, pull), values
 
 
 def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.bool_]:
@@ -124,18 +157,40 @@ def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.b
     return own | (near & (ids[at] != mine))
 
 
-def _onto_surface(sweep: Sweep, points: Floats, leaf: Ints, tangents: Tangents, cell: float) -> Floats:
-    """Two Newton steps towards the field's zero, none longer than half a cell."""
+def _onto_surface(sweep: Sweep, points: Floats, leaf: Ints, tangents: Tangents, longest: float) -> Floats:
+    """Two Newton steps towards the field's zero, none longer than `longest` [mm]."""
     points = points.copy()
     for _ in range(2):
-        value, slope = sweep.deepest(points, leaf, tangents, gradient=True)
+        found = sweep.deepest(points, leaf, tangents, gradient=True)
+        value, slope = found.depth, found.gradient
         square = np.einsum("nx,nx->n", slope, slope)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = -slope * (value / square)[:, None]
         length = np.linalg.norm(step, axis=1)
-        near = np.isfinite(length) & (length < 0.5 * cell)
+        near = np.isfinite(length) & (length < longest)
         points[near] += step[near]
     return points
+
+
+def _onto_edges(
+    sweep: Sweep, vertices: Floats, edgy: NDArray[np.bool_], sheets: _Sheets, longest: float
+) -> Floats:
+    """Bring some vertices to where the bites around them meet, by two Newton steps."""
+    vertices = vertices.copy()
+    number = np.cumsum(edgy) - 1
+    mine = edgy[sheets.owner] & (sheets.bite >= 0)
+    owner, bite = np.unique(np.stack([number[sheets.owner[mine]], sheets.bite[mine]]), axis=1)
+    # a vertex beside a closing face has planes that no bite makes: it stays
+    closed = np.zeros(len(vertices), dtype=bool)
+    closed[sheets.owner[sheets.bite < 0]] = True
+    rows = np.flatnonzero(edgy)
+    free = ~closed[rows]
+    for _ in range(2):
+        meeting = sweep.evaluate(vertices[rows[owner]], bite, gradient=True)
+        step, _ = _meet(owner, meeting.gradient, -meeting.depth, len(rows))
+        step[~free | (np.linalg.norm(step, axis=1) > longest)] = 0.0
+        vertices[rows] += step
+    return vertices
 
 
 def _quads(grid: Grid, cells: Cells, crossings: Crossings, first: Ints) -> Ints:

@@ -1,5 +1,7 @@
 """All tools' depth fields as one: their bites numbered through."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,18 @@ from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join, l
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Deepest:
+    """The deepest bite at some points."""
+
+    depth: Floats
+    """(n,) [mm]; −inf where a block has no bites"""
+    gradient: Floats
+    """(n, 3) of the depth; (0, 3) unless asked for"""
+    bite: Ints
+    """(n,) −1 where a block has none"""
 
 
 class Sweep:
@@ -91,15 +105,15 @@ class Sweep:
 
     def deepest(
         self, points: Floats, block: Ints, tangents: Tangents, *, gradient: bool = False, sign: bool = False
-    ) -> tuple[Floats, Floats]:
-        """Largest depth (n,) over the bites of each point's `block`, and its gradient.
+    ) -> Deepest:
+        """The deepest of the bites of each point's `block` (n,) in `tangents`.
 
         The bite whose tangent stands highest is evaluated, and then those whose upper bound is above it.
-        Where only the `sign` is asked for, it comes with a depth that is about right. A point without
-        bites has depth −inf.
+        Where only the `sign` is asked for, it comes with a depth and a bite that are about right.
         """
         depth = np.full(len(points), -np.inf)
         slope = np.zeros((len(points) if gradient else 0, 3))
+        winner = np.full(len(points), -1, dtype=np.int64)
         lists = tangents.lists
         length = np.diff(lists.start)[block]
         some = np.flatnonzero(length)
@@ -121,7 +135,7 @@ class Sweep:
             if out.any():
                 upper[out[owner]] = np.inf
             best = self.evaluate(points[items], lists.bites[pairs[first]], gradient=gradient)
-            floor = best.depth
+            floor, leading = best.depth, pairs[first]
             if gradient:
                 slope[items] = best.gradient
             rivals = upper > floor[owner]
@@ -138,12 +152,14 @@ class Sweep:
                 who = who[start[:-1]]
                 higher = deepest > floor[who]
                 floor[who[higher]] = deepest[higher]
+                leading[who[higher]] = pairs[rivals[at[higher]]]
                 if gradient:
                     slope[items[who[higher]]] = other.gradient[at[higher]]
             depth[items] = floor
+            winner[items] = lists.bites[leading]
 
         in_parallel(work, batches(np.concatenate([[0], np.cumsum(length[some])]), LISTED))
-        return depth, slope
+        return Deepest(depth, slope, winner)
 
     def _of(self, n: int, index: Ints) -> NDArray[np.bool_]:
         return (index >= self._first[n]) & (index < self._first[n + 1])

@@ -78,8 +78,10 @@ def test_culling_keeps_the_deepest_pass(cut, seed):
             bound = level + ball @ slope + tangents.over
             assert (bite_depths(field, middle + ball, left) <= bound + 1e-7).all()
             home = np.zeros(len(points), dtype=int)
-            value, gradient = sweep.deepest(points, home, tangents, gradient=True)
-            assert value == pytest.approx(survivors, abs=1e-7)
+            found = sweep.deepest(points, home, tangents, gradient=True)
+            assert found.depth == pytest.approx(survivors, abs=1e-7)
+            own = bite_depths(field, points, found.bite).diagonal()
+            assert own == pytest.approx(found.depth, abs=1e-9)
             best = left[depth.argmax(axis=1)]
             # where one bite alone is the deepest, and on neither side of a corner of its edge
             single = (depth > survivors[:, None] - 1e-6).sum(axis=1) == 1
@@ -88,8 +90,8 @@ def test_culling_keeps_the_deepest_pass(cut, seed):
             for way in (-1.0, 1.0):
                 beside = field.evaluate_bite(points + way * step, best, gradient=True).gradient
                 single &= np.abs(beside - expected).max(axis=1) < 1e-4
-            assert gradient[single] == pytest.approx(expected[single], abs=1e-6)
-            signs, _ = sweep.deepest(points, home, tangents, sign=True)
+            assert found.gradient[single] == pytest.approx(expected[single], abs=1e-6)
+            signs = sweep.deepest(points, home, tangents, sign=True).depth
             assert ((signs > 0) == (survivors > 0))[np.abs(survivors) > 1e-7].all()
             middle, half = points[rng.integers(8, len(points))], half / 3.0
 

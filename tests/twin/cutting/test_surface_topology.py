@@ -72,7 +72,9 @@ def mesh_of(removed):
     key = np.concatenate(keys)
     order = np.argsort(key)
     nothing = np.zeros((len(key), 3))
-    crossings = Crossings(key[order], nothing, nothing, np.concatenate(rising)[order])
+    crossings = Crossings(
+        key[order], nothing, nothing, np.zeros(len(key), dtype=int), np.concatenate(rising)[order]
+    )
     first = np.concatenate([[0], np.cumsum(SHEETS[case])])
     quads = _quads(grid, Cells(cell, case, leaf, leaves.tangents), crossings, first)
     middle = np.repeat(cell, SHEETS[case], axis=0) + 0.5
