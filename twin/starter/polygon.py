@@ -1,0 +1,144 @@
+"""A polygon to be turned with a head of inserts."""
+
+import math
+from dataclasses import dataclass
+
+from twin.cutters.polygon_head import PolygonHead
+from twin.errors import InputError
+from twin.starter.plan import Draft, program_text, toml_number, up, word
+
+BESIDE = 2.0
+"""[mm] beside the blank and above it"""
+ROOM = 0.1
+"""[mm] of blank outside the corners"""
+TOOL_RPM, WORK_RPM = 4000.0, 2000.0
+"""Of the machine as delivered."""
+RATIO = 2
+"""Q / P of slightly convex faces; every larger one makes them concave (geometry.md 3)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PolygonOrder:
+    """What is wanted; None = chosen."""
+
+    sides: int
+    across_flats: float
+    """[mm]"""
+    length: float = 10.0
+    """[mm]"""
+    inserts: int | None = None
+    """None = half the sides, where that is whole"""
+    tip_radius: float = 40.0
+    """[mm] of the head"""
+    speed: int = 300
+    """S of the work [rpm]"""
+    feed: float = 0.5
+    """[mm per turn of the work]"""
+
+
+def draft_polygon(order: PolygonOrder) -> Draft:
+    """Job and program. Raises InputError for what the head cannot turn."""
+    _check(order)
+    inserts = _inserts(order)
+    head = PolygonHead(inserts=inserts, tip_radius_mm=order.tip_radius)
+    ratio = order.sides // inserts
+    speed = min(order.speed, int(TOOL_RPM / ratio), int(WORK_RPM))
+    blank = up(_corners(order, ratio) + ROOM, 0.1)
+    above = up(blank + 2.0 * BESIDE, 1.0)
+    half = head.edge_width_mm / 2.0
+    rows = (
+        ("G28 U0 W0", "X and Z to the reference point"),
+        ("G28 H0 V0", "work and tool spindle to the reference point"),
+        (f"G54 G00 {word('X', above)} {word('Z', half + BESIDE)}", "beside the blank"),
+        (f"G51.2 P{inserts} Q{order.sides}", f"tool turns {ratio} times as fast as the work"),
+        (f"S{speed}", "speed of the work"),
+        (f"G99 G01 {word('X', order.across_flats)} F1.", "X = width across flats"),
+        (f"G01 {word('Z', -order.length - half - BESIDE)} {word('F', order.feed)}", "the whole length"),
+        (f"G01 {word('X', above)} F1.", "retract"),
+        ("S0", "stop"),
+        ("G50.2", "gear box off"),
+        ("M30", ""),
+    )
+    return Draft(
+        job=_job(order, head, blank),
+        program=program_text(f"{order.sides} SIDES {order.across_flats:g} A/F", rows),
+        summary=f"{order.sides} sides, {order.across_flats:g} mm across flats: "
+        f"P{inserts} Q{order.sides} S{speed}",
+    )
+
+
+def _check(order: PolygonOrder) -> None:
+    limits = (
+        ("--sides", order.sides, 3, 100),
+        ("--across-flats", order.across_flats, 2.0, 200.0),
+        ("--length", order.length, 0.5, 300.0),
+        ("--tip-radius", order.tip_radius, 10.0, 200.0),
+        ("--inserts", order.inserts if order.inserts is not None else 1, 1, 20),
+        ("--speed", order.speed, 1, WORK_RPM),
+        ("--feed", order.feed, 0.01, 10.0),
+    )
+    for name, value, low, high in limits:
+        if not low <= value <= high:
+            raise InputError(f"{name} {value:g}", remedy=f"valid: {low:g} to {high:g}")
+
+
+def _inserts(order: PolygonOrder) -> int:
+    if order.inserts is None:
+        return order.sides // RATIO if order.sides % RATIO == 0 else 1
+    if order.sides % order.inserts:
+        divisors = [n for n in range(1, order.sides + 1) if order.sides % n == 0]
+        raise InputError(
+            f"{order.inserts} inserts cannot share {order.sides} sides evenly",
+            remedy=f"valid: {', '.join(map(str, divisors))}",
+        )
+    return order.inserts
+
+
+def _corners(order: PolygonOrder, ratio: int) -> float:
+    """Largest diameter that the head leaves: where the curves of neighbouring inserts cross.
+
+    The tip's curve, geometry.md 3: w(θ) = A e^(−jθ) + R e^(j (i − 1) θ), nearest to the axis at A − R.
+    """
+    distance = order.across_flats / 2.0 + order.tip_radius
+    corner = math.pi / order.sides
+    low, high = 0.0, math.pi / max(ratio, 2)
+    for _ in range(60):
+        theta = 0.5 * (low + high)
+        w = _tip(distance, order.tip_radius, ratio, theta)
+        low, high = (theta, high) if abs(math.atan2(w[1], w[0])) < corner else (low, theta)
+    return 2.0 * math.hypot(*_tip(distance, order.tip_radius, ratio, low))
+
+
+def _tip(distance: float, radius: float, ratio: int, theta: float) -> tuple[float, float]:
+    """Tip in the work frame, the face's middle on +x; insert at its nearest for θ = 0."""
+    x = distance * math.cos(theta) - radius * math.cos((ratio - 1) * theta)
+    y = -distance * math.sin(theta) - radius * math.sin((ratio - 1) * theta)
+    return x, y
+
+
+def _job(order: PolygonOrder, head: PolygonHead, blank: float) -> str:
+    number = toml_number
+    return f"""\
+[machine]
+model = "hobbing_lathe"
+setup = "hobbing"
+
+[work]
+diameter_mm = {number(blank)}
+length_mm = {number(order.length)}
+clamping = "chuck"
+
+[tool]
+kind = "polygon_head"
+inserts = {head.inserts}
+tip_radius_mm = {number(head.tip_radius_mm)}
+edge_width_mm = {number(head.edge_width_mm)}
+
+[program]
+file = "program.nc"
+
+[nominal]
+kind = "polygon"
+number_of_sides = {order.sides}
+across_flats_mm = {number(order.across_flats)}
+"""
