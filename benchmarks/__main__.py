@@ -9,12 +9,13 @@ from pathlib import Path
 import manifold3d
 import numpy as np
 
+from benchmarks.reading import reading
 from controller.cnc import Controller
 from controller.dry_run import dry_run
 from controller.parameters import delivered
 from controller.source import load_program, parse_program
+from twin.cutting.blank import Blank
 from twin.cutting.cut import cut
-from twin.cutting.stock import Blank
 from twin.job import read_job
 from twin.machine import IdealMachine, MujocoMachine
 from twin.presets import cutters_of, settings_of
@@ -118,6 +119,8 @@ def boolean_of_lofts(count: int = 20) -> float:
     return time.perf_counter() - start
 
 
+for figures in reading():
+    say(**figures)
 controller_blocks()
 machine_ticks()
 for name in ("hexagon_af17", "spur_m2_z20"):

@@ -31,7 +31,6 @@ class Support(Enum):
     """What the twin does with a code."""
 
     RUNS = "runs"
-    LATER = "not supported yet"
     NEVER = "not supported by the twin"
 
 
@@ -51,6 +50,11 @@ class GCode:
         """As a programmer writes it: G01, G50.2."""
         return g_name(self.tenths)
 
+    @property
+    def instead(self) -> str:
+        """What to write where the twin does not run the code."""
+        return _INSTEAD.get(self.tenths, "a program without it; the cuts written out as G00 to G03")
+
 
 def g_name(tenths: int) -> str:
     """The usual spelling of a G code: 10 -> G01, 502 -> G50.2."""
@@ -66,37 +70,37 @@ _LANGUAGE = "GSK 988TA/TB manual, G codes"
 _ROWS = (
     (0, "01", "RUNS", "positioning at rapid, linear", _RULINGS),
     (10, "01", "RUNS", "linear interpolation", _RULINGS),
-    (20, "01", "LATER", "circular interpolation clockwise", _RULINGS),
-    (30, "01", "LATER", "circular interpolation counter-clockwise", _RULINGS),
-    (320, "01", "LATER", "thread cutting", _RULINGS),
+    (20, "01", "RUNS", "circular interpolation clockwise", _RULINGS),
+    (30, "01", "RUNS", "circular interpolation counter-clockwise", _RULINGS),
+    (320, "01", "RUNS", "thread cutting", _RULINGS),
     (340, "01", "NEVER", "variable-lead thread cutting", _LANGUAGE),
-    (900, "01", "LATER", "outer or inner turning cycle", _RULINGS),
-    (920, "01", "LATER", "threading cycle", _RULINGS),
-    (940, "01", "LATER", "facing cycle", _RULINGS),
+    (900, "01", "RUNS", "outer or inner turning cycle", _RULINGS),
+    (920, "01", "RUNS", "threading cycle", _RULINGS),
+    (940, "01", "RUNS", "facing cycle", _RULINGS),
     (40, "00", "RUNS", "dwell", _RULINGS),
     (71, "00", "NEVER", "cylindrical interpolation", _LANGUAGE),
-    (100, "00", "LATER", "offset data setting", _RULINGS),
-    (110, "00", "LATER", "offset data setting off", _LANGUAGE),
-    (270, "00", "LATER", "reference return check", _RULINGS),
+    (100, "00", "RUNS", "offset data setting", _RULINGS),
+    (110, "00", "RUNS", "offset data setting off", _LANGUAGE),
+    (270, "00", "RUNS", "reference return check", _RULINGS),
     (280, "00", "RUNS", "return to the reference point", _RULINGS),
-    (300, "00", "LATER", "return to the 2nd, 3rd, 4th reference point", _RULINGS),
-    (310, "00", "LATER", "skip", _RULINGS),
+    (300, "00", "RUNS", "return to the 2nd, 3rd, 4th reference point", _RULINGS),
+    (310, "00", "RUNS", "skip", _RULINGS),
     (360, "00", "NEVER", "automatic tool offset X", _LANGUAGE),
     (370, "00", "NEVER", "automatic tool offset Z", _LANGUAGE),
     (500, "00", "RUNS", "coordinate setting, spindle speed clamp", _RULINGS),
-    (520, "00", "LATER", "local coordinate system", _RULINGS),
+    (520, "00", "RUNS", "local coordinate system", _RULINGS),
     (530, "00", "RUNS", "machine coordinates", "inclined axis, 选择机械坐标 (G53)"),
-    (650, "00", "LATER", "macro call", _RULINGS),
-    (700, "00", "LATER", "finishing cycle", _RULINGS),
-    (710, "00", "LATER", "roughing cycle along Z", _RULINGS),
-    (720, "00", "LATER", "roughing cycle along X", _RULINGS),
-    (730, "00", "LATER", "pattern repeating", _RULINGS),
-    (740, "00", "LATER", "peck drilling along Z", _RULINGS),
-    (750, "00", "LATER", "grooving along X", _RULINGS),
-    (760, "00", "LATER", "multiple threading cycle", _RULINGS),
+    (650, "00", "RUNS", "macro call", _RULINGS),
+    (700, "00", "RUNS", "finishing cycle", _RULINGS),
+    (710, "00", "RUNS", "roughing cycle along Z", _RULINGS),
+    (720, "00", "RUNS", "roughing cycle along X", _RULINGS),
+    (730, "00", "RUNS", "pattern repeating", _RULINGS),
+    (740, "00", "RUNS", "peck drilling along Z", _RULINGS),
+    (750, "00", "RUNS", "grooving along X", _RULINGS),
+    (760, "00", "RUNS", "multiple threading cycle", _RULINGS),
     (960, "02", "RUNS", "constant surface speed", _RULINGS),
     (970, "02", "RUNS", "spindle speed in rpm", _RULINGS),
-    (220, "04", "LATER", "stored stroke check 2 on", _RULINGS),
+    (220, "04", "RUNS", "stored stroke check 2 on", _RULINGS),
     (230, "04", "RUNS", "stored stroke check 2 off", _RULINGS),
     (980, "05", "RUNS", "feed per minute", _RULINGS),
     (990, "05", "RUNS", "feed per revolution", _RULINGS),
@@ -113,7 +117,7 @@ _ROWS = (
     (870, "10", "NEVER", "side drilling cycle", _LANGUAGE),
     (880, "10", "NEVER", "side tapping cycle", _LANGUAGE),
     (890, "10", "NEVER", "side boring cycle", _LANGUAGE),
-    (660, "12", "LATER", "modal macro call", _RULINGS),
+    (660, "12", "RUNS", "modal macro call", _RULINGS),
     (670, "12", "RUNS", "modal macro call off", _RULINGS),
     (540, "14", "RUNS", "work coordinate system 1", _RULINGS),
     (550, "14", "RUNS", "work coordinate system 2", _RULINGS),
@@ -137,6 +141,26 @@ G_CODES: dict[int, GCode] = {
     for tenths, group, support, meaning, clause in _ROWS
 }
 """Every G code of the controller, by its number in tenths."""
+
+_INSTEAD = {
+    71: "C moves written out, as G01 Z C",
+    121: "X and C moves written out, as G01 X C",
+    340: "G32 with a constant lead F",
+    360: "the offset by G10 P X",
+    370: "the offset by G10 P Z",
+    410: "G40, and the contour programmed for the tool centre or with offsets",
+    420: "G40, and the contour programmed for the tool centre or with offsets",
+    830: "G74, or the hole written out as G01 and G00",
+    870: "G75, or the hole written out as G01 and G00",
+}
+
+
+def nearest_names(number: float, count: int = 6) -> str:
+    """The G codes that the twin runs nearest to a number, for messages: "G50, G50.2, ..."."""
+    running = [code for code in G_CODES.values() if code.support is Support.RUNS]
+    nearest = sorted(running, key=lambda code: abs(code.tenths / 10 - number))[:count]
+    return ", ".join(code.name for code in sorted(nearest, key=lambda code: code.tenths))
+
 
 POWER_ON: dict[Group, int] = {
     G_CODES[code].group: code for code in (0, 970, 980, 180, 210, 230, 400, 540, 640, 670, 800, 502, 131)

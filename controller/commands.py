@@ -117,6 +117,12 @@ class Couple:
     gear: GearBox
     phase: float = 0.0
     """R of G51.2: the master turns by so much first [deg]"""
+    normal_module: float | None = None
+    """Q of G81 [mm]; of a diametral pitch the module that goes with it"""
+    helix_angle: float | None = None
+    """P of G81 [deg], + right-hand"""
+    lead: float = 0.0
+    """A of G51.2 [mm per turn of the work], + right-hand; 0 = straight"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -176,9 +182,11 @@ class Coolant:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStop:
-    """M00, M01 with the optional-stop signal."""
+    """M00, M01 with the optional-stop signal, #3006."""
 
     span: Span
+    message: str = ""
+    """of #3006"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

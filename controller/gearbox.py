@@ -7,12 +7,12 @@ Hobbing (G81): master = tool, slave = work, L / T. Polygon (G51.2): master = wor
 import math
 from dataclasses import dataclass
 from enum import Enum
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
 MM_PER_INCH = 25.4
 
 
@@ -54,7 +54,7 @@ class GearBox:
         return self.axial is not None
 
 
-Travel = TypeVar("Travel", float, Floats)
+Travel = TypeVar("Travel", float, "NDArray[np.float64]")
 
 
 def slave_travel(gear: GearBox, master_travel: Travel) -> Travel:

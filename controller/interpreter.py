@@ -1,63 +1,51 @@
-"""Program flow: the next block, checked whole, as typed commands; subprograms, ends, the way between lines.
+"""Program flow: the next block, checked whole, as typed commands.
 
 A block in alarm leaves no trace: modal state and place in the program change only when all of it is good.
+Nothing is read ahead: a block is evaluated when it is executed.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 from controller.alarms import Alarm, alarm
-from controller.codes import G_CODES, Group
-from controller.commands import Command, Coolant, ProgramEnd, ProgramStop
+from controller.blocks import interpret_block
+from controller.codes import POWER_ON, Group
+from controller.commands import Command, Move, ProgramEnd
 from controller.draft import Draft
+from controller.flow import Flow
+from controller.lexer import OpenWord, Word, lex
 from controller.machine_data import INCREMENT_LETTER, MachineData
+from controller.macro.run import MacroRunner
+from controller.macro.statement import Statement, parse_statement
+from controller.macro.system import SystemVariables
+from controller.macro.variables import Variables, empty_locals
 from controller.modal import Modal
 from controller.motion import Motion
-from controller.motion_blocks import (
-    interpret_feed,
-    interpret_motion,
-    interpret_tool,
-    interpret_work_offset,
-)
 from controller.offsets import Offsets
-from controller.quantities import Reader
-from controller.source import Program
+from controller.plain_lane import PlainLane
+from controller.quantities import INCH_DIGITS, METRIC_DIGITS, Reader
+from controller.source import Program, parse_program
 from controller.span import Span
-from controller.spindle_blocks import interpret_spindle, stop_spindle
-from controller.sync_blocks import interpret_sync
-from controller.syntax import Block, parse_block
+from controller.syntax import Block, Line, OpenBlock, build_block, read_line
 
-DEEPEST_NESTING = 10
 LONGEST_STANDSTILL = 1_000_000
 """blocks without motion before HT9006"""
+LARGEST_LABEL = 99_999_999
+_MOST_LINES = 4096
+"""read lines that are kept for loops and subprograms"""
 _G20, _G21 = 200, 210
-_END = -1
-"""in place of a line: the program is over"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """What one block asks for."""
+    """What one block asks for, or one part of a cycle."""
 
     index: int
     """line of the block, from 0"""
     span: Span
     commands: tuple[Command, ...]
-    warnings: tuple[Alarm, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _Frame:
-    """A program that is being executed."""
-
-    start: int
-    """index of its first line"""
-    end: int
-    """index behind its last line"""
-    repeats: int
-    """runs that are left after this one"""
-    back: int
-    """index of the line to go on with in the caller"""
+    warnings: tuple[Alarm, ...] = ()
 
 
 class Interpreter:
@@ -66,188 +54,245 @@ class Interpreter:
     def __init__(
         self, program: Program, machine: MachineData, offsets: Offsets, signals: Mapping[str, bool]
     ) -> None:
-        self.modal = Modal()
+        self.modal = Modal(tool_shift=offsets.of_tool(None, machine))
+        self.statements = False
+        """whether macro statements without a command give steps of their own, for events at their lines"""
         self._program = program
         self._machine = machine
-        self._offsets = offsets
         self._signals = signals
+        self._calculator = machine.parameters.bit(3401, 0)
         letters = machine.letters
         self._letters = frozenset(letters) | {INCREMENT_LETTER[k] for k in letters if k in INCREMENT_LETTER}
-        self._frames = [
-            _Frame(0, min((k for k in sorted(program.starts.values())[1:]), default=len(program.lines)), 0, 0)
-        ]
-        self._parsed: dict[int, Block] = {}
-        self._cursor = 0
+        self._system = SystemVariables(machine, offsets)
+        self._variables = Variables(self._system)
+        self._macros = MacroRunner(machine, self._variables, self._system)
+        self._flow = Flow(program, self._variables)
+        self._lines: dict[int, Line] = {}
+        self._lane = PlainLane(machine)
+        self._lane_open = self._lane.enter(self.modal)
+        self._sequel: Iterator[Step] | None = None
         self._still = 0
-        self._finished = False
+
+    @property
+    def offsets(self) -> Offsets:
+        """Work and tool offsets as the program has left them."""
+        return self._system.offsets
 
     def next(self, motion: Motion) -> Step | None:
-        """The next block; None when the program has ended. Raises AlarmError with the block's place."""
-        if self._finished:
-            return None
-        while self._cursor < self._frames[-1].end:
-            index = self._cursor
-            block = self._parsed.get(index) or parse_block(self._program, index, self._letters)
-            if len(self._frames) > 1:
-                self._parsed[index] = block  # a subprogram is read again and again
-            if block.empty or self._skipped(block):
-                self._cursor += 1
+        """The next block; None when the program has ended. Raises AlarmError with the block's place.
+
+        Macro statements are executed on the way; one gives a step of its own only where it asks for a
+        command.
+        """
+        if self._sequel is not None:
+            step = next(self._sequel, None)
+            if step is not None:
+                return step
+            self._sequel = None
+        flow = self._flow
+        while not flow.finished:
+            index = flow.cursor
+            if index >= flow.frame.end:
+                return self._text_end(index)
+            if self._lane_open and (move := self._lane.read(self._program.lines[index])):
+                self._count(index)
+                flow.cursor = index + 1
+                self.modal = self._lane.modal
+                return Step(index=index, span=self._program.span(index, 1), commands=(move,))
+            line = self._line(index)
+            if self._passed_over(line):
+                flow.cursor = index + 1
                 continue
             self._count(index)
-            return self._read(block, index, motion)
-        return self._text_end()
+            step = self._run(line, index, motion)
+            if step is not None:
+                return step
+        return None
 
     def moved(self) -> None:
         """Something has moved: the program is not caught in a loop."""
         self._still = 0
 
-    def _skipped(self, block: Block) -> bool:
-        return block.skip is not None and self._signals.get(f"BDT{block.skip}", False)
+    @property
+    def cursor(self) -> int | None:
+        """Index of the line that is read next; None inside a cycle."""
+        return self._flow.cursor if self._sequel is None and not self._flow.finished else None
+
+    def rewind(self) -> None:
+        """The program begins anew; modal states and common variables stay."""
+        self._variables.local = empty_locals()
+        self._flow = Flow(self._program, self._variables)
+        self._sequel = None
+        self._still = 0
+
+    def stopped(self, *, in_sync: bool) -> None:
+        """RESET or an emergency stop: the program is rewound, spindles out of sync stand."""
+        modal = self.modal
+        if not in_sync:
+            codes = {
+                **modal.codes,
+                Group.HOBBING: POWER_ON[Group.HOBBING],
+                Group.POLYGON: POWER_ON[Group.POLYGON],
+            }
+            modal = replace(modal, gear=None, sync_rpm=0.0, codes=codes)
+        self._enter(replace(modal, direction=0))
+        self.rewind()
+
+    def mdi(self, text: str, motion: Motion) -> Step:
+        """One block typed by the operator; the place in the program stays.
+
+        Raises AlarmError for what is wrong in it, PS0123 for a macro statement, HT9012 for a call.
+        """
+        (line, *more) = parse_program(text, file="MDI").lines
+        place = Span(file="MDI", line=1, column=1)
+        if more:
+            raise alarm("HT9012", f"{1 + len(more)} lines", place, valid="one block")
+        if statement := parse_statement(line, "MDI", 1):
+            raise alarm("PS0123", line.strip()[:20], statement.span)
+        words = tuple(lex(line, "MDI", 1))
+        block = self._closed(OpenBlock(span=place, words=words, skip=None), motion)
+        draft, step = self._interpret(block, self._flow.cursor, motion, stored=False)
+        if draft.go is not None:
+            raise alarm(
+                "HT9012", "a call, a jump or the end of a program", place, valid="one block of motion"
+            )
+        self._commit(draft)
+        return step
+
+    # One block
+
+    def _passed_over(self, line: Line) -> bool:
+        """Whether the line is skipped by /n, or asks for nothing."""
+        if line.skip is not None:
+            self._variables.changes += 1  # the operator may end a loop here
+            if self._signals.get(f"BDT{line.skip}", False):
+                return True
+        return isinstance(line, Block) and line.empty
+
+    def _run(self, line: Line, index: int, motion: Motion) -> Step | None:
+        """Carry a line out; None for a macro statement that asks for no command."""
+        if not isinstance(line, Statement):
+            return self._execute(self._closed(line, motion), index, motion)
+        self._system.look(motion, self.modal, self._label)
+        commands = self._macros.run(line, index, self._flow, self.modal)
+        if not commands and not self.statements:
+            return None
+        return Step(index=index, span=line.span, commands=commands)
+
+    def _line(self, index: int) -> Line:
+        line = self._lines.get(index)
+        if line is None:
+            line = read_line(self._program, index, self._letters)
+            if self._flow.repetitions or not self._flow.main:  # only there a line comes back
+                if len(self._lines) >= _MOST_LINES:
+                    self._lines.clear()
+                self._lines[index] = line
+        return line
+
+    def _closed(self, line: Block | OpenBlock, motion: Motion) -> Block:
+        """A block with the expressions in it evaluated; a word of the null value is left out."""
+        if isinstance(line, Block):
+            return line
+        self._system.look(motion, self.modal, self._label)
+        self._variables.increment_digits = INCH_DIGITS if self.modal.inch else METRIC_DIGITS
+        words: list[Word] = []
+        for word in line.words:
+            if isinstance(word, OpenWord):
+                value = word.expression(self._variables)
+                if value is not None:
+                    words.append(Word(word.address, word.text, word.column, value))
+            else:
+                words.append(word)
+        return build_block(words, line.span, self._letters)
+
+    def _block_at(self, index: int, motion: Motion) -> Block:
+        """A line of a profile as a block, empty where it is skipped. Raises PS0066 for a macro statement."""
+        line = self._line(index)
+        if line.skip is not None and self._signals.get(f"BDT{line.skip}", False):
+            return build_block([], self._program.span(index, 1), self._letters)
+        if isinstance(line, Statement):
+            raise alarm("PS0066", "a macro statement", line.span)
+        return self._closed(line, motion)
 
     def _count(self, index: int) -> None:
         self._still += 1
         if self._still > LONGEST_STANDSTILL:
             raise alarm("HT9006", f"{LONGEST_STANDSTILL} blocks without motion", self._program.span(index, 1))
 
-    def _read(self, block: Block, index: int, motion: Motion) -> Step:
+    def _execute(self, block: Block, index: int, motion: Motion) -> Step:
         """Interpret a block, then let it take effect."""
+        draft, step = self._interpret(block, index, motion, stored=True)
+        if draft.go is not None:
+            draft.go()
+        else:
+            self._flow.cursor = index + 1
+        self._commit(draft)
+        return step
+
+    def _interpret(self, block: Block, index: int, motion: Motion, *, stored: bool) -> tuple[Draft, Step]:
+        """The block as commands; nothing has changed yet."""
         warnings: list[Alarm] = []
-        codes = dict(self.modal.codes)
         inch = _G20 in block.codes or (self.modal.inch and _G21 not in block.codes)
-        reader = Reader(
-            inch=inch,
-            calculator=self._machine.parameters.bit(3401, 0),
-            place=block.place,
-            warn=warnings.append,
-        )
         draft = Draft(
             block=block,
+            index=index,
+            stored=stored,
             machine=self._machine,
             motion=motion,
-            offsets=self._offsets,
+            flow=self._flow,
+            block_at=lambda line: self._block_at(line, motion),
+            offsets=self._system.offsets,
             modal=self.modal,
-            reader=reader,
+            reader=Reader(inch=inch, calculator=self._calculator, place=block.place, warn=warnings.append),
             rest=dict(block.words),
         )
-        flow = None
-        if not interpret_sync(draft):
-            self._set_codes(draft)
-            interpret_tool(draft)
-            interpret_work_offset(draft, codes[Group.WORK_OFFSET])
-            interpret_spindle(draft)
-            interpret_feed(draft, codes[Group.FEED])
-            flow = self._call(draft, index)
-            interpret_motion(draft)
-            self._finish_block(draft)
-        draft.refuse_rest()
-        self.modal = draft.modal
-        self._go(flow, index)
-        return Step(index=index, span=block.span, commands=tuple(draft.commands), warnings=tuple(warnings))
+        interpret_block(draft, optional_stop=self._signals.get("OPTIONAL_STOP", False))
+        commands = tuple(draft.commands)
+        return draft, Step(index=index, span=block.span, commands=commands, warnings=tuple(warnings))
 
-    def _set_codes(self, draft: Draft) -> None:
-        for tenths, word in draft.block.codes.items():
-            if tenths in (_G20, _G21):
-                draft.refuse_in_sync(str(word), word)
-            if G_CODES[tenths].group is not Group.ONE_SHOT:
-                draft.set_code(G_CODES[tenths].group, tenths)
+    def _commit(self, draft: Draft) -> None:
+        if draft.modal is not self.modal:
+            self._enter(draft.modal)
+        self._system.offsets = draft.offsets
+        if draft.sequel is not None:
+            self._sequel = self._steps(draft.sequel, draft.index)
 
-    def _finish_block(self, draft: Draft) -> None:
-        """The M codes that act after the motion, and coolant."""
-        number = draft.block.m_code.number if draft.block.m_code else None
-        if number in (0, 1):
-            if number == 0 or self._signals.get("OPTIONAL_STOP", False):
-                draft.warn("HT9109", f"M{number:02d}")
-                draft.commands.append(ProgramStop(span=draft.block.span))
-        elif number in (2, 30):
-            draft.refuse_in_sync(f"M{number:02d}")
-            draft.commands.append(ProgramEnd())
-        elif number == 5:
-            stop_spindle(draft)
-        elif number in (8, 9):
-            draft.commands.append(Coolant(on=number == 8))
+    def _enter(self, modal: Modal) -> None:
+        self.modal = modal
+        self._lane_open = self._lane.enter(modal)
 
-    # The way between lines
+    def _steps(self, sequel: Iterator[tuple[int | None, Command]], index: int) -> Iterator[Step]:
+        """The parts of a cycle, each at the line of the profile that it comes from."""
+        for line, pairs in groupby(sequel, key=lambda pair: index if pair[0] is None else pair[0]):
+            for _, command in pairs:
+                yield Step(index=line, span=self._program.span(line, 1), commands=(command,))
 
-    def _call(self, draft: Draft, index: int) -> _Frame | int | None:
-        """M98 and M99: the frame to enter, or the line to go to."""
-        number = draft.block.m_code.number if draft.block.m_code else None
-        if number == 98:
-            return self._subprogram(draft, index)
-        if number == 99:
-            return self._return(draft, index)
-        if number in (2, 30):
-            return _END
-        return None
+    # Where the program stands
 
-    def _subprogram(self, draft: Draft, index: int) -> _Frame:
-        """M98 P1234 L5, or in the old form M98 P51234."""
-        word, times = draft.take("P"), draft.take("L")
-        if word is None:
-            raise draft.alarm("PS0076", "M98 without P", valid="P and the O number")
-        value = draft.reader.natural(word)
-        repeats = draft.reader.natural(times) if times else 1
-        if times is None and value not in self._program.starts and value > 9999:
-            repeats, value = divmod(value, 10_000)
-        start = self._program.starts.get(value)
-        if start is None:
-            known = ", ".join(f"O{number:04d}" for number in sorted(self._program.starts)[:10]) or "none"
-            raise draft.alarm("PS0076", str(word), word, valid=f"an O number of this file: {known}")
-        if len(self._frames) > DEEPEST_NESTING:
-            raise draft.alarm("PS0077", f"level {len(self._frames)}", word)
-        if repeats == 0:
-            raise draft.alarm("HT9012", str(times or word), times or word, valid="at least one run")
-        return _Frame(start, self._program.end_of(start), repeats - 1, index + 1)
+    def _label(self) -> tuple[int | None, int | None]:
+        """#4115, #4114: the O number and the last N number of the program that is being executed."""
+        frame = self._flow.frame
+        program = next((o for o, k in self._program.starts.items() if frame.start <= k < frame.end), None)
+        return program, self._program.label_of(min(self._flow.cursor, frame.end - 1), frame.start)
 
-    def _return(self, draft: Draft, index: int) -> int:
-        """M99: the line to go on with. In the main program it would begin anew without end."""
-        word = draft.take("P")
-        frame, main = self._frames[-1], len(self._frames) == 1
-        target = None
-        if word:
-            home = self._frames[-2] if not main else frame
-            target = self._program.sequence(draft.reader.natural(word), home.start)
-            if target is None:
-                raise draft.alarm("PS0060", f"N{word.text}", word)
-        if main and (target is None or target <= index):
-            raise draft.alarm("HT9011", "M99 that begins the main program anew", word)
-        if main and target is not None:
-            return target
-        if frame.repeats and target is None:
-            return frame.start
-        return frame.back if target is None else target
+    # The end
 
-    def _go(self, flow: _Frame | int | None, index: int) -> None:
-        """Commit the place in the program."""
-        if flow is None:
-            self._cursor = index + 1
-        elif isinstance(flow, _Frame):
-            self._frames.append(flow)
-            self._cursor = flow.start
-        elif flow == _END:
-            self._finished = True
-        else:
-            self._leave(flow)
-            self._cursor = flow
-
-    def _leave(self, target: int) -> None:
-        """M99: stay for another run, or go back to the caller."""
-        frame = self._frames[-1]
-        if len(self._frames) == 1:
-            return
-        if frame.repeats and target == frame.start:
-            self._frames[-1] = replace(frame, repeats=frame.repeats - 1)
-        else:
-            self._frames.pop()
-
-    def _text_end(self) -> Step:
-        """The text ends without M30, M02 or M99."""
-        index = len(self._program.lines) - 1
-        span = self._program.span(min(self._frames[-1].end, len(self._program.lines)) - 1)
-        if len(self._frames) > 1:
+    def _text_end(self, index: int) -> Step:
+        """The end of a profile, or of a text without M30, M02 or M99."""
+        flow = self._flow
+        if home := flow.frame.home:
+            back = flow.frame.back - 1
+            span = self._program.span(back, 1)
+            flow.leave(span)
+            move = Move(absolute=home, incremental={}, feed=None, places={})
+            return Step(index=back, span=span, commands=(move,))
+        last = min(index, len(self._program.lines)) - 1
+        span = self._program.span(last)
+        if not flow.main:
             raise alarm("PS5010", "the end of a subprogram without M99", span)
-        self._finished = True
+        flow.finished = True
         warnings = [Alarm(number="HT9105", found="the end of the text", span=span)]
         if self.modal.gear:
             found = f"the end of the text in {self.modal.gear.kind.value}"
             warnings = [Alarm(number="HT9113", found=found, span=span)]
-        return Step(index=index, span=span, commands=(ProgramEnd(),), warnings=tuple(warnings))
+        return Step(index=last, span=span, commands=(ProgramEnd(),), warnings=tuple(warnings))

@@ -3,14 +3,10 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from controller.alarms import alarm
 from controller.inclined import InclinedPair, in_dead_band
-from controller.parameters import Parameters
+from controller.parameters import SWITCHES, Parameters
 
-Floats = NDArray[np.float64]
 INCREMENT_LETTER = {"X": "U", "Z": "W", "Y": "V", "C": "H"}
 """axis letter -> letter of its increments (rulings, section 1, Addresses)"""
 
@@ -26,11 +22,15 @@ class Axis:
     type_a: bool
     """rotary axis whose displays count modulo 360°"""
     diameter: bool
-    reference: float
-    """first reference point [mm | deg]"""
+    references: tuple[float, ...]
+    """first to fourth reference point [mm | deg] (parameters 1240 to 1243)"""
     upper: float
     """stroke limit 1 [mm]"""
     lower: float
+    area_2: tuple[float, float] | None
+    """stroke limit 2: lower and upper bound [mm]; None = the axis has no part in it (1310#0 = 0)"""
+    area_3: tuple[float, float] | None
+    """stroke limit 3: lower and upper bound [mm]; None = the axis has no part in it (1310#1 = 0)"""
     rapid: float
     """[mm/s | deg/s]"""
     cutting: float
@@ -44,6 +44,24 @@ class Axis:
     def factor(self) -> float:
         """Programmed units per unit of slide travel: 2 for a diameter axis."""
         return 2.0 if self.diameter else 1.0
+
+    @property
+    def reference(self) -> float:
+        """First reference point [mm | deg]."""
+        return self.references[0]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PositionSwitch:
+    """Signal PSWnn: on while a slide stands in a range (parameters 6910 to 6965; inclined axis, 注意 9)."""
+
+    number: int
+    """1 to 16"""
+    axis: int
+    """column"""
+    lower: float
+    """[mm | deg] slide travel"""
+    upper: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,22 +77,14 @@ class MachineData:
     """column (parameter 9001); None where that is no rotary axis"""
     tool_spindle: int | None
     """column (parameter 9002)"""
+    position_switches: tuple[PositionSwitch, ...]
+    """those that have an axis"""
     parameters: Parameters
 
     @property
     def letters(self) -> tuple[str, ...]:
         """Axis letters in system order."""
         return tuple(axis.letter for axis in self.axes)
-
-    @property
-    def factors(self) -> Floats:
-        """(axes,) programmed units per slide travel."""
-        return np.array([axis.factor for axis in self.axes])
-
-    @property
-    def rotary(self) -> NDArray[np.bool_]:
-        """(axes,) which axes are rotary."""
-        return np.array([axis.rotary for axis in self.axes])
 
     def column_of_number(self, number: int) -> int | None:
         """Column of a system axis number; None where the machine has no such axis."""
@@ -100,6 +110,7 @@ def machine_data(parameters: Parameters) -> MachineData:
         pair_angle_off=off,
         work_spindle=_rotary_column(axes, parameters.integer(9001)),
         tool_spindle=_rotary_column(axes, parameters.integer(9002)),
+        position_switches=_position_switches(parameters, axes),
         parameters=parameters,
     )
 
@@ -123,9 +134,11 @@ def _axis(parameters: Parameters, column: int, letter: str) -> Axis:
         rotary=rotary,
         type_a=rotary and not parameters.bit(1006, 1, letter),
         diameter=diameter,
-        reference=parameters.number(1240, letter) / factor,
+        references=tuple(parameters.number(number, letter) / factor for number in (1240, 1241, 1242, 1243)),
         upper=math.inf if rotary else upper,
         lower=-math.inf if rotary else lower,
+        area_2=None if rotary else _area(parameters, letter, bit=0, plus=1322, factor=factor),
+        area_3=None if rotary else _area(parameters, letter, bit=1, plus=1324, factor=factor),
         rapid=parameters.number(1420, letter) / 60.0,
         cutting=parameters.number(1430, letter) / 60.0,
         acceleration=parameters.number(1660, letter),
@@ -133,10 +146,48 @@ def _axis(parameters: Parameters, column: int, letter: str) -> Axis:
     )
 
 
+def _area(
+    parameters: Parameters, letter: str, *, bit: int, plus: int, factor: float
+) -> tuple[float, float] | None:
+    """Bounds of stroke limit 2 or 3 on one axis; equal ones are kept: G22 may give the axis an area."""
+    if not parameters.bit(1310, bit, letter):
+        return None
+    lower, upper = parameters.number(plus + 1, letter), parameters.number(plus, letter)
+    if upper < lower:
+        raise alarm(
+            "HT9005",
+            f"{plus}.{letter} = {upper:g} below {plus + 1}.{letter} = {lower:g}",
+            valid="the plus side at or above the minus side; equal = no area",
+        )
+    return lower / factor, upper / factor
+
+
+def _position_switches(parameters: Parameters, axes: tuple[Axis, ...]) -> tuple[PositionSwitch, ...]:
+    found: list[PositionSwitch] = []
+    for number in range(1, SWITCHES + 1):
+        axis = parameters.integer(6909 + number)
+        if axis == 0:
+            continue
+        if axis > len(axes):
+            raise alarm("HT9005", f"{6909 + number} = {axis}, no axis", valid=f"0 to {len(axes)}")
+        lower, upper = parameters.number(6949 + number), parameters.number(6929 + number)
+        if lower > upper:
+            valid = "the upper end at or above the lower"
+            raise alarm(
+                "HT9005", f"{6929 + number} = {upper:g} below {6949 + number} = {lower:g}", valid=valid
+            )
+        factor = axes[axis - 1].factor
+        found.append(PositionSwitch(number=number, axis=axis - 1, lower=lower / factor, upper=upper / factor))
+    return tuple(found)
+
+
 def _inclined_pair(
     parameters: Parameters, axes: tuple[Axis, ...]
 ) -> tuple[InclinedPair | None, float | None]:
-    """The pair of 8211 and 8212, looked at only when 8200#0 = 1 (rulings, section 4)."""
+    """The pair of 8211 and 8212, looked at only when 8200#0 = 1 (rulings, section 4).
+
+    Both axes count in the same unit, as they must (注意 6): G20 and G21 hold for all axes alike.
+    """
     if not parameters.bit(8200, 0):
         return None, None
     inclined, orthogonal = parameters.integer(8211), parameters.integer(8212)

@@ -1,246 +1,254 @@
 """Commands become motion: every command starts where the last one ended, spindles run beside the axes."""
 
+import math
 from collections.abc import Callable
+from functools import cached_property
+from typing import Any
 
-import numpy as np
-
-from controller.alarms import Alarm, AlarmClass
+from controller.alarms import Alarm, AlarmClass, alarm
+from controller.arcs import arc_displacements
 from controller.commands import (
+    Arc,
     Command,
     Coolant,
     Couple,
     Dwell,
+    Feed,
     MachineMove,
     Move,
     ProgramEnd,
     ProgramStop,
+    ReferenceCheck,
     ReferenceReturn,
     SelectTool,
     SetCoordinates,
     ShiftCoordinates,
+    Skip,
     SpindleSpeed,
+    StrokeCheck,
     SurfaceSpeed,
+    Thread,
     Uncouple,
 )
-from controller.coupling import Sensor
-from controller.gearbox import GearBox
-from controller.inclined import cartesian_from_slides, slides_from_cartesian
-from controller.machine_data import MachineData
-from controller.path import NOTHING
-from controller.reference import Reference, References
-from controller.registers import modulo, shortest
+from controller.operator import HIGHEST_OVERRIDE
+from controller.path import NOTHING, Travel
+from controller.registers import TURN, modulo, shortest
+from controller.requests import Steps
+from controller.rest_to_rest import ShortLane
+from controller.returning import Returning
 from controller.span import Span
-from controller.spindles import DEG_PER_S
-from controller.straight import StraightMotion
+from controller.travel import Manner
 
 
-class Motion(StraightMotion):
+class Motion(Returning):
     """Plans the motion of the whole machine, command by command."""
 
-    def __init__(
-        self,
-        machine: MachineData,
-        *,
-        tick_s: float,
-        compensated: bool,
-        warn: Callable[[Alarm], None],
-        closed_form: bool = False,
-    ) -> None:
-        super().__init__(machine, tick_s=tick_s, warn=warn, closed_form=closed_form)
-        axes = len(machine.axes)
-        self.references = References.at_power_on(axes, machine.pair)
-        self._compensated = compensated
-        self._to_slides = slides_from_cartesian(axes, machine.pair, compensated=compensated)
-        self._to_cartesian = cartesian_from_slides(axes, machine.pair)
+    skip_positions: tuple[float, ...] | None = None
+    """(axes,) work coordinates where the last G31 was touched, or ended (#5061 ff.); None before it"""
+    _helix: float | None = None
+    """spindle angle [deg] at which a thread that goes on would begin, right behind a thread"""
 
-    def execute(self, command: Command, span: Span) -> None:
-        """Plan one command of the block at `span`. Raises AlarmError where the machine cannot do it."""
+    @cached_property
+    def _short_lane(self) -> ShortLane:
+        return ShortLane(self)
+
+    def execute(self, command: Command, span: Span) -> Steps[None] | None:
+        """Plan one command of the block at `span`: at once, or by steps that still have to be taken.
+
+        Raises AlarmError, now or in the steps, where the machine cannot do it.
+        """
         self._span = span
-        match command:
-            case Move() | MachineMove():
-                self._straight(command)
-            case ReferenceReturn():
-                self._return(command)
-            case Dwell():
-                self.time += command.seconds
-            case Couple():
-                self._couple(command)
-            case Uncouple():
-                self._uncouple()
-            case SpindleSpeed():
-                self._spindle(command)
-            case SurfaceSpeed():
-                self._surface_speed(command)
-            case ProgramEnd():
-                self._stop_spindles()
-            case SelectTool():
-                self.timeline.tools.add(self.time, command.number)
-            case SetCoordinates() | ShiftCoordinates():
-                self._set_displays(command)
-            case Coolant() | ProgramStop():
-                pass  # nothing moves: whoever takes the commands reports them
+        if self._helix is not None and not isinstance(command, Thread):
+            self._helix = None
+        return _LAWS[type(command)](self, command)
 
-    def cancel_sync(self, kind: AlarmClass) -> None:
+    def cancel_sync(self, kind: AlarmClass) -> Steps[None]:
         """What an alarm of this class does to the gear box (hobbing, 注意事项)."""
         if kind not in (AlarmClass.PROGRAM, AlarmClass.USER):
-            self._uncouple()
+            yield from self._uncouple()
 
-    def _straight(self, command: Move | MachineMove) -> None:
-        if isinstance(command, Move):
-            self._move(command)
-        else:
-            self._machine_move(command)
+    def displayed_speed(self, time: float) -> float:
+        """The speed display [mm/min]: of the axes' own motion, without the pulses of the gear box and of S
+        (hobbing, 注意事项: 系统显示的实际速度); of rotary axes alone [deg/min]."""
+        tracks, axes = self.timeline.tracks, self.machine.axes
+        turned = {k for k, rpm in self.spindles.commanded.items() if rpm}
+        own = [(axis.rotary, tracks[k].speed(time)) for k, axis in enumerate(axes) if k not in turned]
+        linear = math.hypot(*(speed for rotary, speed in own if not rotary))
+        return 60.0 * (linear or math.hypot(*(speed for rotary, speed in own if rotary)))
 
-    def _set_displays(self, command: SetCoordinates | ShiftCoordinates) -> None:
-        if isinstance(command, SetCoordinates):
-            for axis, value in command.absolute.items():
-                self.registers.shift(axis, value - float(self.registers.absolute[axis]))
-        else:
-            for axis, amount in command.shift.items():
-                self.registers.shift(axis, -amount)
+    # Moves
 
-    def _move(self, command: Move) -> None:
-        axes, pair = self.machine.axes, self.machine.pair
-        travel = np.zeros(len(axes))
+    def _travels(self, absolute: Travel, incremental: Travel) -> tuple[dict[int, float], dict[int, float]]:
+        """Travel by column in program terms, and the absolute positions it ends on."""
+        axes, shown = self.machine.axes, self.registers.absolute
+        travel: dict[int, float] = {}
         exact: dict[int, float] = {}
-        for axis, target in command.absolute.items():
-            delta = target - float(self.registers.absolute[axis])
-            travel[axis] = shortest(delta) if axes[axis].type_a else delta
-            exact[axis] = modulo(target) if axes[axis].type_a else target
-        for axis, delta in command.incremental.items():
-            travel[axis] = delta
-        travel[np.abs(travel) < NOTHING] = 0.0
-        if pair and not self._compensated and travel[pair.inclined] != 0.0 and self.references.lose():
-            found = f"a move of {axes[pair.inclined].letter} with NOZAGC = 1"
-            self._warn(Alarm(number="HT9108", found=found, span=self._span))
-        self._travel(self._to_slides @ travel, travel, command.feed, command.places, exact)
+        for axis, target in absolute.items():
+            delta, exact[axis] = target - shown[axis], target
+            if axes[axis].type_a:
+                delta, exact[axis] = shortest(delta), modulo(target)
+            if abs(delta) > NOTHING:
+                travel[axis] = delta
+        for axis, delta in incremental.items():
+            if abs(delta) > NOTHING:
+                travel[axis] = delta
+        self._note_commanded(travel)
+        if not travel:
+            for axis, target in exact.items():
+                shown[axis] = target
+        return travel, exact
 
-    def _machine_move(self, command: MachineMove) -> None:
-        slides = np.zeros(len(self.machine.axes))
+    def _move(self, command: Move) -> Steps[Any] | None:
+        return None if self._short_lane.move(command) else self._travelled(command)
+
+    def _travelled(self, command: Move) -> Steps[Any]:
+        feed = command.feed
+        if feed and feed.per_revolution:
+            yield from self._await_turning(feed)
+        travel, exact = self._travels(command.absolute, command.incremental)
+        path = self._straight(travel, rapid=feed is None, exact=exact, places=command.places)
+        yield from self._travel(path, feed)
+
+    def _arc_move(self, command: Arc) -> Steps[Any]:
+        if command.feed.per_revolution:
+            yield from self._await_turning(command.feed)
+        shown = self.registers.absolute
+        travel = {k: target - shown[k] for k, target in command.absolute.items()} | dict(command.incremental)
+        radius, sweep, waves = arc_displacements(
+            travel, command.plane, command.centre, clockwise=command.clockwise
+        )
+        if radius < NOTHING:
+            raise alarm("HT9012", "an arc of radius 0", self._span, valid="I K or R that make a circle")
+        self._note_commanded(travel)
+        path = self._arc(
+            waves,
+            radius=radius,
+            sweep=sweep,
+            wanted=self._fastest(command.feed),
+            exact=command.absolute,
+            places=command.places,
+        )
+        yield from self._travel(path, command.feed)
+
+    def _fastest(self, feed: Feed) -> float:
+        """The highest speed that a feed may become by its override, or by dry run [1/s]."""
+        if feed.per_revolution:
+            return math.inf
+        return max(feed.value * HIGHEST_OVERRIDE / 100.0, self._dry_speed)
+
+    def _machine_move(self, command: MachineMove) -> Steps[Any]:
+        slides: dict[int, float] = {}
         now = self.timeline.positions(self.time)
         for axis, target in command.target.items():
-            delta = target - float(now[axis])
+            delta = target - now[axis]
             slides[axis] = shortest(delta) if self.machine.axes[axis].type_a else delta
-        slides[np.abs(slides) < NOTHING] = 0.0
-        self._travel(slides, self._to_cartesian @ slides, None, command.places, {})
+        self._leave_references(slides)
+        yield from self._travel(self._on_slides(slides, command.places), None)
 
-    # Reference points
+    def _skip(self, command: Skip) -> Steps[None]:
+        move = command.move
+        if move.feed and move.feed.per_revolution:
+            yield from self._await_turning(move.feed)
+        travel, exact = self._travels(move.absolute, move.incremental)
+        path = self._straight(travel, rapid=move.feed is None, exact=exact, places=move.places)
+        if self.circumstances.closed_form and path:
+            self._warn(Alarm(number="HT9133", found="G31", span=self._span))
+        touch = yield from self._travel(path, move.feed, Manner.SKIP)
+        at = list(self.registers.absolute)
+        if touch:
+            now = self.timeline.positions(self.time)
+            back = {k: touch.latch[k] - now[k] for k in range(len(at)) if k not in self.spindles.free}
+            for axis, way in self._program(back).items():
+                at[axis] += way
+        self.skip_positions = tuple(at)
 
-    def _return(self, command: ReferenceReturn) -> None:
-        """From the intermediate point to the reference point (inclined axis, 自动参考点返回)."""
-        axes, pair = self.machine.axes, self.machine.pair
-        self.references.check_order(command.axes, command.span)
-        for axis in command.axes:
-            if self.spindles.turning(axis, self.time):
-                self._turn(axis, 0.0)
-                self.time = self.spindles.ready(axis, self.time)
-        now = self.timeline.positions(self.time)
-        reference = np.array([axis.reference for axis in axes])
-        slides = np.zeros(len(axes))
-        cartesian = np.zeros(len(axes))
-        for axis in command.axes:
-            inclined_pair = pair is not None and axis in (pair.inclined, pair.orthogonal)
-            known = self.references.states[axis] is Reference.ESTABLISHED
-            if inclined_pair and known and self.machine.parameters.bit(8209, 0):
-                cartesian[axis] = float(
-                    (self._to_cartesian @ reference)[axis] - self.registers.cartesian[axis]
-                )
-            else:
-                delta = float(reference[axis] - now[axis])
-                slides[axis] = shortest(delta) if axes[axis].type_a else delta
-        for way in (slides, cartesian):
-            way[np.abs(way) < NOTHING] = 0.0
-        total = slides + self._to_slides @ cartesian
-        self._travel(total, self._to_cartesian @ slides + cartesian, None, {}, {})
-        self._establish(command.axes)
+    def _thread(self, command: Thread) -> Steps[Any]:
+        """G32: waits for speed and angle of the spindle; a hold acts after the pass."""
+        axes = self.machine.axes
+        yield from self._ready(self._driven_axis())
+        travel, exact = self._travels(command.absolute, command.incremental)
+        path = self._straight(travel, rapid=False, exact=exact, places=command.places)
+        longest = max((abs(d) for k, d in travel.items() if not axes[k].rotary), default=0.0)
+        if path is None or longest == 0.0:
+            return
+        self._threading = True
+        spindle = self._feed_axis()
+        angle = command.start_angle if self._helix is None else self._helix
+        yield from self._reach_angle(spindle, angle)
+        turning = self.timeline.speed(spindle, self.time)
+        speed = command.lead * abs(turning) / TURN * path.length / longest
+        if speed > path.top_speed * (1.0 + 1e-9):
+            found = f"{speed * 60.0:.0f} mm/min for the lead, {path.top_speed * 60.0:.0f} possible"
+            raise alarm("HT9020", found, self._span, valid="a lower S, or a smaller lead")
+        yield from self._travel(path, Feed(value=speed), Manner.THREAD)
+        self._helix = angle + math.copysign(TURN * longest / command.lead, turning)
+        self._threading = False
+        if self.spindles.override != self.panel.spindle_override:
+            self._override_spindles()
 
-    def _establish(self, returned: tuple[int, ...]) -> None:
-        """The axes stand on their reference points; the displays of what was lost become true again."""
-        pair = self.machine.pair
-        was_lost = pair is not None and self.references.states[pair.orthogonal] is not Reference.ESTABLISHED
-        self.references.establish(returned)
-        now = self.timeline.positions(self.time)
-        for axis in returned:
-            if axis in self.spindles.free:
-                self.spindles.free.discard(axis)
-                self.registers.orient(axis, float(now[axis]))
-        if pair and was_lost and self.references.states[pair.orthogonal] is Reference.ESTABLISHED:
-            true = self._to_cartesian @ now
-            for axis in (pair.inclined, pair.orthogonal):
-                error = float(true[axis] - self.registers.cartesian[axis])
-                self.registers.cartesian[axis] += error
-                self.registers.absolute[axis] += error
+    def _reach_angle(self, spindle: int, angle: float) -> Steps[None]:
+        """Wait until the spindle stands at an angle [deg] of its turn."""
+        turning = self.timeline.speed(spindle, self.time)
+        if turning == 0.0:
+            raise alarm(
+                "HT9007", "a thread with the spindle at standstill", self._span, valid="S, M03 before it"
+            )
+        now = self.timeline.positions(self.time)[spindle]
+        ahead = math.copysign(1.0, turning) * (angle - now) % TURN
+        yield from self._wait(self.time + ahead / abs(turning))
 
-    # Spindles and gear box
+    # Zero points, areas, tools
 
-    @property
-    def _following(self) -> bool:
-        gear = self.coupling.gear
-        return gear is not None and gear.follow
+    def _set_coordinates(self, command: SetCoordinates) -> None:
+        for axis, value in command.absolute.items():
+            self.registers.shift(axis, value - self.registers.absolute[axis])
 
-    def _turn(self, axis: int, rpm: float) -> None:
-        gear = self.coupling.gear
-        coupled = gear is not None and axis == gear.master
-        self.spindles.turn(axis, rpm, self.time, self.coupling.ramp() if coupled else None)
+    def _shift_coordinates(self, command: ShiftCoordinates) -> None:
+        for axis, amount in command.shift.items():
+            self.registers.shift(axis, -amount)
 
-    def _spindle(self, command: SpindleSpeed) -> None:
-        gear = self.coupling.gear
-        if gear is None or command.axis != gear.master:
-            self.spindles.free.add(command.axis)
-            self.spindles.surface = None
-        self._turn(command.axis, command.rpm)
-        if command.wait:
-            self.time = self.spindles.ready(command.axis, self.time)
-        self.note_extents()
+    def _stroke_check(self, command: StrokeCheck) -> None:
+        self.limits = self.limits.after(command)
 
-    def _surface_speed(self, command: SurfaceSpeed) -> None:
-        self.spindles.surface = command
-        self.spindles.free.add(command.axis)
-        self.spindles.adapt(float(self.registers.absolute[command.radial]), self.time)
+    def _select_tool(self, command: SelectTool) -> None:
+        self.timeline.tools.add(self.time, command.number)
 
-    def _stop_spindles(self) -> None:
-        self.spindles.surface = None
-        gear = self.coupling.gear
-        turning = [k for k in range(len(self.machine.axes)) if self.spindles.driven(k, self.time)]
-        for axis in turning:
-            self._turn(axis, 0.0)
-        for axis in turning:
-            self.time = self.spindles.ready(axis, self.time)
-        if turning and gear is None:
-            self.spindles.free.update(turning)
-        self.note_extents()
+    def _end(self, _: ProgramEnd) -> Steps[None]:
+        return self._stop_spindles(list(range(len(self.machine.axes))))
 
-    def _couple(self, command: Couple) -> None:
-        if self._following:
-            self._to_tick()
-            self._at_encoders(lambda sensor: self._recouple(command, sensor))
-        else:
-            self._recouple(command, None)
+    def _stop(self, command: ProgramStop) -> Steps[None] | None:
+        """M00, M01, #3006: waits for cycle start, where somebody is there to press it."""
+        if self.time < self.circumstances.operator_from and not self.circumstances.attended:
+            number, found = ("HT9114", command.message) if command.message else ("HT9109", "a program stop")
+            self._warn(Alarm(number=number, found=found, span=command.span))
+            return None
+        self.panel.running = False
+        self.between_blocks = True
+        return self._stand("a program stop")
 
-    def _recouple(self, command: Couple, sensor: Sensor | None) -> None:
-        """Close an older engagement, turn the master by R, engage."""
-        before = self.coupling.close(self.time, sensor)
-        if command.phase:
-            self.time = self.coupling.advance_master(command.gear, command.phase, self.time)
-        if command.gear.follow:
-            self._to_tick()
-            self._at_encoders(lambda encoders: self._engage(command.gear, before, encoders))
-        else:
-            self._engage(command.gear, before, None)
 
-    def _engage(self, gear: GearBox, before: float, sensor: Sensor | None) -> None:
-        jump = (self.coupling.engage(gear, self.time, sensor) - before) / DEG_PER_S
-        if abs(jump) > NOTHING:
-            found = f"a jump of {jump:+.3f} rpm"
-            self._warn(Alarm(number="HT9100", found=found, span=self._span))
+def _nothing(_: Motion, __: Command) -> None:
+    """Nothing moves: whoever takes the commands reports them."""
 
-    def _uncouple(self) -> None:
-        if self._following:
-            self._to_tick()
-            self._at_encoders(self._release)
-        else:
-            self._release(None)
 
-    def _release(self, sensor: Sensor | None) -> None:
-        self.time = self.coupling.release(self.time, sensor)
-        self.note_extents()
+_LAWS: dict[type, Callable[..., Steps[Any] | None]] = {
+    Move: Motion._move,
+    Arc: Motion._arc_move,
+    Thread: Motion._thread,
+    Skip: Motion._skip,
+    MachineMove: Motion._machine_move,
+    ReferenceReturn: Motion._return,
+    ReferenceCheck: Motion._check_reference,
+    StrokeCheck: Motion._stroke_check,
+    Dwell: lambda motion, command: motion._dwell(command.seconds),
+    Couple: Motion._couple,
+    Uncouple: lambda motion, _: motion._uncouple(),
+    SpindleSpeed: Motion._spindle,
+    SurfaceSpeed: Motion._surface_speed,
+    SetCoordinates: Motion._set_coordinates,
+    ShiftCoordinates: Motion._shift_coordinates,
+    SelectTool: Motion._select_tool,
+    Coolant: _nothing,
+    ProgramStop: Motion._stop,
+    ProgramEnd: Motion._end,
+}

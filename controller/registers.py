@@ -4,12 +4,9 @@ Machine (slide) coordinates are no register but the axes themselves. Inside ever
 lengths in radius, rotary axes unwrapped; modulo and diameter belong to the surface (rulings, sections 2-4).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
 TURN = 360.0
 """[deg]"""
 
@@ -27,29 +24,30 @@ def shortest(delta: float) -> float:
 
 @dataclass(slots=True)
 class Registers:
-    """Commanded positions at the end of the last planned block."""
+    """Commanded positions at the end of the last planned motion; each list has one entry an axis."""
 
-    absolute: Floats
-    """(axes,) work coordinates; sync motion enters only when the gear box is released"""
-    relative: Floats
-    """(axes,)"""
-    cartesian: Floats
-    """(axes,) Cartesian machine position; equal to the slides but for an inclined pair"""
-    zero: Floats
-    """(axes,) absolute minus Cartesian machine position, as offsets and G50 have set it"""
+    absolute: list[float]
+    """work coordinates; sync motion enters only when the gear box is released"""
+    relative: list[float]
+    cartesian: list[float]
+    """Cartesian machine position; equal to the slides but for an inclined pair"""
+    zero: list[float]
+    """absolute minus Cartesian machine position, as offsets and G50 have set it"""
 
     @classmethod
     def at_power_on(cls, axes: int) -> "Registers":
         """All zero: the machine stands on its reference points."""
-        return cls(
-            absolute=np.zeros(axes), relative=np.zeros(axes), cartesian=np.zeros(axes), zero=np.zeros(axes)
-        )
+        return cls([0.0] * axes, [0.0] * axes, [0.0] * axes, [0.0] * axes)
 
-    def move(self, cartesian: Floats) -> None:
-        """Every display follows an ordinary motion (axes,)."""
-        self.absolute += cartesian
-        self.relative += cartesian
-        self.cartesian += cartesian
+    def move(self, travel: Mapping[int, float], machine: Mapping[int, float]) -> None:
+        """An ordinary motion: `travel` for the displays, `machine` for the Cartesian machine position; they
+        differ under machine lock."""
+        absolute, relative, cartesian = self.absolute, self.relative, self.cartesian
+        for axis, amount in travel.items():
+            absolute[axis] += amount
+            relative[axis] += amount
+        for axis, amount in machine.items():
+            cartesian[axis] += amount
 
     def shift(self, axis: int, amount: float) -> None:
         """The work coordinate of the same place grows by `amount`."""

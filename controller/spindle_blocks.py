@@ -19,6 +19,8 @@ def interpret_spindle(draft: Draft) -> None:
         if code in draft.block.codes:
             _mode(draft, code)
     word = draft.take("S")
+    if word:
+        word = draft.reader.nearest(word)
     number = draft.block.m_code.number if draft.block.m_code else None
     if word and G50 in draft.block.codes:
         _clamp(draft, word)

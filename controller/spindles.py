@@ -1,7 +1,7 @@
-"""Axes that turn at a speed: ramps, speed arrival, constant surface speed.
+"""Axes that turn at a speed: ramps, speed arrival, constant surface speed, spindle override.
 
 A ramp is one quadratic piece beside the motion of the other axes; no block waits for it but S0 in sync, M05,
-M19, G28, the end of the program, and a move with feed per revolution.
+M19, G28, the end of the program, a thread, and a move with feed per revolution.
 """
 
 import math
@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from controller.commands import SurfaceSpeed
 from controller.machine_data import MachineData
+from controller.peaks import Peaks
 from controller.timeline import Timeline
 
 DEG_PER_S = 6.0
@@ -25,20 +26,38 @@ class Spindles:
 
     machine: MachineData
     timeline: Timeline
+    peaks: Peaks
+    commanded: dict[int, float] = field(default_factory=dict)
+    """column -> speed as programmed [rpm], before the override"""
     arrival: dict[int, float] = field(default_factory=dict)
     """column -> time [s] at which the commanded speed is reached"""
     free: set[int] = field(default_factory=set)
     """columns that have turned as a spindle and not been oriented since (PS0197)"""
     surface: SurfaceSpeed | None = None
+    override: float = 1.0
 
-    def turn(self, axis: int, rpm: float, time: float, acceleration: float | None = None) -> float:
-        """Ramp an axis to a speed [rpm] from `time` on; returns the time of arrival [s]."""
+    def turn(
+        self,
+        axis: int,
+        rpm: float,
+        time: float,
+        acceleration: float | None = None,
+        highest: float = math.inf,
+    ) -> float:
+        """Ramp an axis to a programmed speed [rpm] from `time` on; returns the time of arrival [s].
+
+        The override acts on it, within the spindle's own limit and `highest` [rpm].
+        """
+        self.commanded[axis] = rpm
+        most = max(abs(rpm), min(self.machine.axes[axis].spindle_max, highest))
+        target = math.copysign(min(abs(rpm) * self.override, most), rpm) * DEG_PER_S
         track = self.timeline.tracks[axis]
         rate = acceleration or self.machine.axes[axis].acceleration
-        position, speed, target = track.at(time), track.speed(time), rpm * DEG_PER_S
+        position, speed = track.at(time), track.speed(time)
         duration = abs(target - speed) / rate
         if duration > 0.0:
             track.add(time, position, speed, math.copysign(rate, target - speed))
+            self.peaks.note({axis: 1.0}, max(abs(speed), abs(target)), rate)
         track.add(time + duration, position + 0.5 * (speed + target) * duration, target)
         self.arrival[axis] = time + duration
         return time + duration
@@ -67,4 +86,4 @@ class Spindles:
     def adapt(self, radius: float, time: float) -> None:
         """Under G96, head for the speed of this radius [mm] from `time` on."""
         if self.surface:
-            self.turn(self.surface.axis, self.surface_rpm(radius), time)
+            self.turn(self.surface.axis, self.surface_rpm(radius), time, highest=self.surface.clamp)

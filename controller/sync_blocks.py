@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from controller.codes import Group
 from controller.commands import Couple, SpindleSpeed, Uncouple
 from controller.draft import Draft
-from controller.gearbox import GearBox, SyncKind, helix_rate, helix_rate_inch, polygon_rate
+from controller.gearbox import MM_PER_INCH, GearBox, SyncKind, helix_rate, helix_rate_inch, polygon_rate
 from controller.lexer import Word
 
 G80, G81, G50_2, G51_2 = 800, 810, 502, 512
@@ -128,6 +128,7 @@ def _hobbing(draft: Draft) -> None:
         )
     master, slave = _hobbing_axes(draft, word)
     axial, rate = None, 0.0
+    module, angle = None, None
     if pitch_word and angle_word:
         bounds = _PITCH if draft.reader.inch else _MODULE
         pitch = _within(draft, draft.reader.pitch(pitch_word), pitch_word, bounds, number)
@@ -137,25 +138,24 @@ def _hobbing(draft: Draft) -> None:
         axial = _axial_axis(draft, word)
         sense = draft.machine.parameters.integer(9003)
         if draft.reader.inch:
+            module = MM_PER_INCH / pitch
             rate = helix_rate_inch(teeth=teeth, diametral_pitch=pitch, helix_angle=angle, sense=sense)
         else:
+            module = pitch
             rate = helix_rate(teeth=teeth, normal_module=pitch, helix_angle=angle, sense=sense)
     if draft.machine.pair:
         draft.warn("HT9112", "G81 with 8200#0 = 1", word)
-    _engage(
-        draft,
-        GearBox(
-            kind=SyncKind.HOBBING,
-            master=master,
-            slave=slave,
-            numerator=starts,
-            denominator=teeth,
-            axial=axial,
-            axial_rate=rate,
-            follow=draft.machine.parameters.bit(201, 7),
-        ),
-        word,
+    gear = GearBox(
+        kind=SyncKind.HOBBING,
+        master=master,
+        slave=slave,
+        numerator=starts,
+        denominator=teeth,
+        axial=axial,
+        axial_rate=rate,
+        follow=draft.machine.parameters.bit(201, 7),
     )
+    _engage(draft, Couple(gear=gear, normal_module=module, helix_angle=angle), word)
 
 
 def _polygon(draft: Draft) -> None:
@@ -182,21 +182,17 @@ def _polygon(draft: Draft) -> None:
     slave, master = _hobbing_axes(draft, word)
     if gear and phase and draft.motion.spindles.turning(master, draft.motion.time):
         raise draft.alarm("HT9008", f"R while {draft.letter(master)} turns", phase_word)
-    _engage(
-        draft,
-        GearBox(
-            kind=SyncKind.POLYGON,
-            master=master,
-            slave=slave,
-            numerator=sides,
-            denominator=cutters,
-            axial=_axial_axis(draft, word) if lead else None,
-            axial_rate=polygon_rate(sides=sides, cutters=cutters, lead=lead) if lead else 0.0,
-            follow=draft.machine.parameters.bit(201, 7),
-        ),
-        word,
-        phase=phase,
+    gear = GearBox(
+        kind=SyncKind.POLYGON,
+        master=master,
+        slave=slave,
+        numerator=sides,
+        denominator=cutters,
+        axial=_axial_axis(draft, word) if lead else None,
+        axial_rate=polygon_rate(sides=sides, cutters=cutters, lead=lead) if lead else 0.0,
+        follow=draft.machine.parameters.bit(201, 7),
     )
+    _engage(draft, Couple(gear=gear, phase=phase, lead=lead), word)
 
 
 def _hobbing_axes(draft: Draft, word: Word | None) -> tuple[int, int]:
@@ -212,6 +208,7 @@ def _hobbing_axes(draft: Draft, word: Word | None) -> tuple[int, int]:
         if column is None:
             raise draft.alarm("PS1593", f"parameter {number} = {value}, no axis of this machine", word)
         axis = machine.axes[column]
+        draft.motion.references.require(column, axis.letter, draft.block.place(word) if word else None)
         if not axis.type_a or axis.spindle_max == 0.0:
             raise draft.alarm(
                 "PS1593", f"parameter {number} = {value}: {axis.letter} is no rotary axis of type A", word
@@ -229,8 +226,8 @@ def _axial_axis(draft: Draft, word: Word | None) -> int:
     return column
 
 
-def _engage(draft: Draft, gear: GearBox, word: Word | None, phase: float = 0.0) -> None:
-    motion = draft.motion
+def _engage(draft: Draft, command: Couple, word: Word | None) -> None:
+    motion, gear = draft.motion, command.gear
     if draft.modal.gear is None:
         for column in (gear.master, gear.slave):
             if motion.spindles.turning(column, motion.time):
@@ -243,7 +240,7 @@ def _engage(draft: Draft, gear: GearBox, word: Word | None, phase: float = 0.0) 
     _check_slave_speed(draft, gear, draft.modal.sync_rpm, word)
     draft.modal = replace(draft.modal, gear=gear)
     draft.set_code(*_ON[gear.kind])
-    draft.commands.append(Couple(gear=gear, phase=phase))
+    draft.commands.append(command)
 
 
 def _orientation(draft: Draft, column: int) -> str:

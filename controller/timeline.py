@@ -1,4 +1,4 @@
-"""All axes over time: one track an axis, the epochs of the gear box, and what block and tool held when.
+"""All axes over time: one track an axis, the epochs of the gear box, and which tool is held when.
 
 The slave's own track carries what it would do without gear box; the law of the epoch is added where the
 timeline is read, from the master's closed form, so no error can grow with the number of turns.
@@ -6,15 +6,11 @@ timeline is read, from the master's closed form, so no error can grow with the n
 
 import bisect
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-
-import numpy as np
-from numpy.typing import NDArray
 
 from controller.gearbox import GearBox, slave_travel
 from controller.segments import Track
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(slots=True, kw_only=True)
@@ -26,20 +22,20 @@ class Epoch:
     """[s]"""
     master_start: float
     """master position at `start` [deg]: measured for the follow type, else commanded"""
-    slides_start: Floats
+    slides_start: Sequence[float]
     """(axes,) own positions at `start`"""
-    weights: Floats
-    """(axes,) slave shift per slide travel [deg/mm]: zero but for a helical gear"""
+    weights: Mapping[int, float]
+    """column -> slave shift per slide travel [deg/mm]: none but for a helical gear"""
     end: float = math.inf
 
-    def shift(self, own: Floats) -> Floats:
-        """Helical shift of the slave (n,) at own positions (n, axes)."""
-        return (own - self.slides_start) @ self.weights
+    def shift(self, own: Sequence[float]) -> float:
+        """Helical shift of the slave [deg] at own positions (axes,)."""
+        return sum(weight * (own[k] - self.slides_start[k]) for k, weight in self.weights.items())
 
 
 @dataclass(slots=True)
 class Marks:
-    """A whole number over time: which block, which tool."""
+    """A whole number over time."""
 
     times: list[float] = field(default_factory=lambda: [-math.inf])
     values: list[int] = field(default_factory=lambda: [0])
@@ -52,20 +48,6 @@ class Marks:
             self.times.append(time)
             self.values.append(value)
 
-    def sample(self, time: Floats) -> NDArray[np.int64]:
-        """(n,) values in force up to each time (n,)."""
-        if self.times[-1] < time[0]:
-            return np.full(len(time), self.values[-1])
-        k = np.searchsorted(np.array(self.times), time, side="left") - 1
-        return np.array(self.values)[k]
-
-    def forget(self, before: float) -> None:
-        """Drop what no time from `before` on needs."""
-        k = bisect.bisect_left(self.times, before) - 1
-        if k > 0:
-            del self.times[:k]
-            del self.values[:k]
-
 
 @dataclass(slots=True)
 class Timeline:
@@ -74,7 +56,6 @@ class Timeline:
     axes: int
     tracks: list[Track] = field(init=False)
     epochs: list[Epoch] = field(default_factory=list)
-    blocks: Marks = field(default_factory=Marks)
     tools: Marks = field(default_factory=Marks)
 
     def __post_init__(self) -> None:
@@ -90,17 +71,17 @@ class Timeline:
         """Whether an open or unread engagement is of the follow type: the machine moves the slave."""
         return any(epoch.gear.follow for epoch in self.epochs)
 
-    def own(self, time: float) -> Floats:
+    def own(self, time: float) -> list[float]:
         """(axes,) positions at one time without the gear box."""
-        return np.array([track.at(time) for track in self.tracks])
+        return [track.at(time) for track in self.tracks]
 
-    def positions(self, time: float) -> Floats:
+    def positions(self, time: float) -> list[float]:
         """(axes,) commanded positions at one time, the open epoch included."""
         positions = self.own(time)
         epoch = self.coupling
         if epoch:
-            shift = float(epoch.shift(positions))
-            master = float(positions[epoch.gear.master]) - epoch.master_start
+            shift = epoch.shift(positions)
+            master = positions[epoch.gear.master] - epoch.master_start
             positions[epoch.gear.slave] += slave_travel(epoch.gear, master) + shift
         return positions
 
@@ -112,26 +93,6 @@ class Timeline:
             return own + self.tracks[epoch.gear.master].speed(time) * epoch.gear.ratio
         return own
 
-    def sample(self, time: Floats) -> Floats:
-        """(n, axes) setpoints at ascending times (n,); follow-type rotation is left to the machine."""
-        out = np.stack([track.sample(time) for track in self.tracks], axis=1)
-        for epoch in self.epochs:
-            first, last = np.searchsorted(time, (epoch.start, epoch.end), side="left")
-            if first < last:
-                part = out[first:last]
-                added = epoch.shift(part)
-                if not epoch.gear.follow:
-                    added += slave_travel(epoch.gear, part[:, epoch.gear.master] - epoch.master_start)
-                part[:, epoch.gear.slave] += added
-        return out
-
-    def in_sync(self, time: Floats) -> NDArray[np.bool_]:
-        """(n,) whether the gear box was engaged up to each time."""
-        engaged = np.zeros(len(time), dtype=bool)
-        for epoch in self.epochs:
-            engaged |= (time > epoch.start) & (time <= epoch.end)
-        return engaged
-
     def still_until(self, time: float) -> float:
         """Until when no axis moves from `time` on; inf where nothing planned moves again."""
         return min(track.still_until(time) for track in self.tracks)
@@ -140,6 +101,9 @@ class Timeline:
         """Free what no time from `before` on needs."""
         for track in self.tracks:
             track.forget(before)
-        self.blocks.forget(before)
-        self.tools.forget(before)
-        self.epochs = [epoch for epoch in self.epochs if epoch.end > before]
+        k = bisect.bisect_left(self.tools.times, before) - 1
+        if k > 0:
+            del self.tools.times[:k]
+            del self.tools.values[:k]
+        if self.epochs and self.epochs[0].end <= before:
+            self.epochs = [epoch for epoch in self.epochs if epoch.end > before]

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+from controller.operator import OperatorEvent
+from twin.advice.advice import Advice
+from twin.cutting.chips import Chips
 from twin.cutting.cut import CutResult
 from twin.errors import ExitCode
 from twin.inspection.result import Inspection, Verdict
@@ -18,6 +21,10 @@ class Options:
     """axes follow their setpoints exactly"""
     cell_mm: float | None = None
     """cell of the cutting grid; None = chosen"""
+    chips: bool = False
+    """count what each tooth takes away"""
+    events: tuple[OperatorEvent, ...] = ()
+    """what the operator does, beside the events of the job"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,8 +37,12 @@ class Outcome:
     session: Session
     cut: CutResult
     inspection: Inspection
+    chips: Chips | None
+    """where they were asked for"""
     times: dict[str, float]
     """stage -> wall time [s]"""
+    advice: tuple[Advice, ...] = ()
+    """what job and program said before metal was cut"""
 
     @property
     def exit_code(self) -> ExitCode:

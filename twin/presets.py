@@ -6,12 +6,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from controller.alarms import AlarmError, ControllerError
-from controller.events import check_signals
 from controller.machine_data import machine_data
 from controller.offsets import Offsets
+from controller.operator import OperatorEvent, check_events, operator_event
 from controller.parameters import Parameters, delivered
+from controller.signals import check_signals
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
+from twin.cutters.polygon_head import PolygonHead
 from twin.errors import InputError, Place
 from twin.inspection.nominal import GearNominal
 from twin.job.locate import line_of
@@ -25,6 +27,8 @@ class ControllerSettings:
     parameters: Parameters
     offsets: Offsets
     signals: Mapping[str, bool]
+    events: tuple[OperatorEvent, ...] = ()
+    """what the operator does"""
 
 
 def settings_of(
@@ -33,6 +37,7 @@ def settings_of(
     *,
     parameters: Mapping[str, str] | None = None,
     signals: Mapping[str, bool] | None = None,
+    events: tuple[OperatorEvent, ...] = (),
 ) -> ControllerSettings:
     """Settings of a job, with those of the command line on top.
 
@@ -40,24 +45,41 @@ def settings_of(
     """
     with _said_of(job, "machine", "parameters"):
         values = delivered(job.machine.setup, {**job.machine.parameters, **(parameters or {})})
+    machine = machine_data(values)
     given = {**{name: bool(value) for name, value in job.machine.signals.items()}, **(signals or {})}
     with _said_of(job, "machine", "signals"):
-        check_signals(given)
+        check_signals(given, machine.letters)
     offsets = offsets_of(job, cutters)
     with _said_of(job, "setup"):
-        offsets.check(machine_data(values))
-    return ControllerSettings(parameters=values, offsets=offsets, signals=given)
+        offsets.check(machine)
+    return ControllerSettings(
+        parameters=values,
+        offsets=offsets,
+        signals=given,
+        events=(*events_of(job, machine.letters), *events),
+    )
+
+
+def events_of(job: Job, letters: tuple[str, ...]) -> tuple[OperatorEvent, ...]:
+    """`[[events]]` of a job. Raises InputError, at the event, for what no operator can do."""
+    events = []
+    for nth, one in enumerate(job.events):
+        with _said_of(job, "events", "do", nth=nth):
+            event = operator_event(one.do, time_s=one.time_s, line=one.line)
+            check_events((event,), letters)
+            events.append(event)
+    return tuple(events)
 
 
 @contextmanager
-def _said_of(job: Job, *path: str) -> Iterator[None]:
-    """Give the controller's refusals the place in the job."""
+def _said_of(job: Job, *path: str, nth: int = 0) -> Iterator[None]:
+    """Give the controller's refusals the place in the job, in the `nth` table of an array."""
     try:
         yield
     except AlarmError:
         raise
     except ControllerError as cause:
-        line = line_of(job.path.read_text(encoding="utf-8"), path)
+        line = line_of(job.path.read_text(encoding="utf-8"), path, nth)
         place = Place(file=str(job.path), line=line)
         remedy = f"valid: {cause.remedy}" if cause.remedy else ""
         raise InputError(cause.text, place=place, remedy=remedy) from cause
@@ -84,15 +106,17 @@ def offsets_of(job: Job, cutters: Mapping[int, Cutter]) -> Offsets:
 
 
 def _cutter(job: Job, tool: Tool) -> Cutter:
-    if not isinstance(tool, Hob):
+    if isinstance(tool, PolygonHead):
         return tool.cutter()
     if tool.swivel_deg is not None:
         return tool.cutter(math.radians(tool.swivel_deg))
     if not isinstance(job.nominal, GearNominal):
+        name = "hob" if isinstance(tool, Hob) else "wheel"
         raise InputError(
-            "the hob's swivel is not known: the job has no nominal gear",
+            f"the {name}'s swivel is not known: the job has no nominal gear",
             place=Place(file=str(job.path)),
             remedy='swivel_deg in [tool], or [nominal] kind = "gear"',
         )
-    # swivel = helix angle − lead angle, both with the sign of their hand (geometry.md, section 2)
-    return tool.cutter(math.radians(job.nominal.helix_angle_deg) - tool.lead_angle)
+    # swivel = helix angle − lead angle, both with the sign of their hand (geometry.md, sections 2 and 4)
+    lead = tool.lead_angle if isinstance(tool, Hob) else 0.0
+    return tool.cutter(math.radians(job.nominal.helix_angle_deg) - lead)

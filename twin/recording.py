@@ -1,12 +1,12 @@
 """The recorded run: every axis over time, and where the tool was in the part's frame."""
 
-import io
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from twin.output.arrays import save_arrays
 
 Floats = NDArray[np.float64]
 
@@ -77,13 +77,7 @@ class Recording:
             "tool_axis": self.tool_axis,
             "tool_zero": self.tool_zero,
         }
-        # numpy's own writer stamps the hour into the file: the same run would not give the same bytes
-        with zipfile.ZipFile(path, "w") as package:
-            for name, column in columns.items():
-                data = io.BytesIO()
-                np.lib.format.write_array(data, np.ascontiguousarray(column), allow_pickle=False)
-                entry = zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0))
-                package.writestr(entry, data.getbuffer(), zipfile.ZIP_DEFLATED, compresslevel=1)
+        save_arrays(path, columns)
 
 
 def _texts(blocks: tuple[BlockRef, ...]) -> NDArray[np.str_]:

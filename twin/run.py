@@ -10,16 +10,19 @@ from pathlib import Path
 
 from controller.alarms import as_json
 from controller.cnc import Controller
-from controller.dry_run import dry_run
 from controller.source import load_program
+from twin.advice.advice import advice_as_json
+from twin.advice.dry import advised_run
+from twin.cutting.chips import chips
 from twin.cutting.cut import cut
-from twin.cutting.stock import Blank
+from twin.cutting.plan import plan_grid
 from twin.inspection.deviation import deviation_map
 from twin.inspection.inspection import inspect
 from twin.inspection.sheet import to_json
 from twin.job.schema import Job
 from twin.machine import IdealMachine, MujocoMachine
 from twin.outcome import Options, Outcome
+from twin.output.arrays import save_arrays
 from twin.output.folder import require_replaceable, result_folder
 from twin.output.meshes import write_meshes
 from twin.output.provenance import provenance
@@ -58,10 +61,15 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     watch = Stopwatch()
     with watch.measure("set-up"):
         cutters = cutters_of(job)
-        settings = settings_of(job, cutters)
+        settings = settings_of(job, cutters, events=options.events)
         ready = make_ready(job, cutters)
         program = load_program(job.program)
-        cycle = dry_run(program, settings.parameters, settings.offsets, settings.signals).cycle_time_s
+        foreseen, advice = advised_run(job, cutters, settings, program)
+        cycle = foreseen.cycle_time_s
+        blank = job.work.blank()
+        # the cut says at once what it would need, not after the run
+        tip = foreseen.extents["X"].machine[0] + job.setup.reference.X if "X" in foreseen.extents else 0.0
+        plan_grid(blank, cutters.values(), closest=max(tip / 2.0, 0.0), cell_mm=options.cell_mm)
     period = ready.spec.control_period_s
     samples = math.ceil(cycle / period)
     tell.stage(
@@ -74,6 +82,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
             offsets=settings.offsets,
             tick_s=period,
             signals=settings.signals,
+            events=settings.events,
         )
         machine = (
             IdealMachine(len(controller.axes)) if options.ideal else MujocoMachine(ready.tools[0].assembly)
@@ -81,12 +90,16 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         session = record(
             controller, machine, ready, progress=lambda seconds: tell.share(seconds / max(cycle, period))
         )
-    blank = Blank(diameter_mm=job.work.diameter_mm, length_mm=job.work.length_mm, bore_mm=job.work.bore_mm)
     tell.stage("cutting")
     with watch.measure("cutting"):
         result = cut(
             blank, session.motions, cell_mm=options.cell_mm, progress=lambda _stage, share: tell.share(share)
         )
+    taken = None
+    if options.chips:
+        tell.stage("counting the chips")
+        with watch.measure("chips"):
+            taken = chips(blank, session.motions, progress=lambda _stage, share: tell.share(share))
     tell.stage("inspecting")
     with watch.measure("inspection"):
         inspection = inspect(result.remains.vertices, result.remains.faces, job.nominal)
@@ -97,7 +110,9 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         session=session,
         cut=result,
         inspection=inspection,
+        chips=taken,
         times=watch.stages,
+        advice=advice,
     )
     tell.stage("writing the report")
     with result_folder(out) as folder:
@@ -110,12 +125,17 @@ def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
     with watch.measure("files"):
         write_meshes(folder, remains.vertices, remains.faces)
         session.recording.save(folder / "recording.npz")
+        if outcome.chips is not None:
+            save_arrays(folder / "chips.npz", outcome.chips.columns())
         _json(folder / "inspection.json", to_json(outcome.inspection))
         _json(
             folder / "alarms.json",
             {
                 "alarms": [as_json(a) for a in session.alarms],
-                "warnings": [as_json(a) for a in session.warnings],
+                "warnings": [
+                    *(as_json(a) for a in session.warnings),
+                    *(advice_as_json(a) for a in outcome.advice),
+                ],
             },
         )
     origin = provenance(

@@ -68,7 +68,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
             carrier_swivel_deg=math.degrees(cutter.swivel),
             radius_mm=first.radius,
             length_mm=_length(job, job.tools[number]),
-            edges=len(cutter.gash_angle),
+            edges=max(len(cutter.gash_angle), 1),
         )
         assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
         kinematics = read_kinematics(assembly.model, assembly.joints)
@@ -102,4 +102,4 @@ def _length(job: Job, tool: Tool) -> float:
     """Length of the tool along its axis, for the machine's picture and inertia [mm]."""
     if isinstance(tool, Hob):
         return tool.length_mm or max(0.8 * tool.outside_diameter_mm, 1.2 * job.work.diameter_mm)
-    return 4.0 * tool.edge_width_mm + 10.0
+    return 4.0 * tool.breadth_mm + 10.0

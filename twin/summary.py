@@ -4,7 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.alarms import Alarm
+from twin.advice.advice import Advice
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
+from twin.cutting.chips import Chips
 from twin.inspection.result import GearResult, Inspection, PolygonResult
 from twin.outcome import Outcome
 from twin.report.data import Message, Part, Program, ReportData, Row, Severity
@@ -31,17 +34,19 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
 
 
 def messages(outcome: Outcome) -> tuple[Message, ...]:
-    """Alarms and warnings of the controller, then what the cut has to say."""
-    said = [(Severity.ALARM, a) for a in outcome.session.alarms]
-    said += [(Severity.WARNING, a) for a in outcome.session.warnings]
+    """Alarms and warnings of the controller, the advice on the job, then what the cut has to say."""
+    said: list[tuple[Severity, Alarm | Advice]] = [(Severity.ALARM, a) for a in outcome.session.alarms]
+    said += [(Severity.WARNING, a) for a in (*outcome.session.warnings, *outcome.advice)]
     notes = [Message(severity=Severity.WARNING, number="CUT", text=note) for note in outcome.cut.notes]
     return tuple(_message(severity, a) for severity, a in said) + tuple(notes)
 
 
 def lines(outcome: Outcome) -> list[str]:
     """What the terminal says when a run has ended."""
-    said = [str(a) for a in (*outcome.session.alarms, *outcome.session.warnings)]
+    said = [str(a) for a in (*outcome.session.alarms, *outcome.session.warnings, *outcome.advice)]
     said += [f"note: {note}" for note in outcome.cut.notes]
+    if outcome.chips is not None:
+        said.append(f"  {chip_words(outcome.chips)}")
     return said + part_lines(outcome.inspection, messages(outcome))
 
 
@@ -100,7 +105,7 @@ def _polygon_lines(polygon: PolygonResult) -> list[str]:
     ]
 
 
-def _message(severity: Severity, alarm: Alarm) -> Message:
+def _message(severity: Severity, alarm: Alarm | Advice) -> Message:
     span = alarm.span
     return Message(
         severity=severity,
@@ -121,6 +126,8 @@ def _job_rows(outcome: Outcome) -> list[Row]:
         Row(label="Machine", value=machine + (", ideal axes" if outcome.options.ideal else ", servo drives"))
     ]
     blank = f"Ø {job.work.diameter_mm:g} × {job.work.length_mm:g} mm"
+    if job.work.profile:
+        blank += " turned to " + ", ".join(f"Ø {d:g} at z {z:g}" for z, d in job.work.profile)
     if job.work.bore_mm:
         blank += f", bore {job.work.bore_mm:g} mm"
     rows.append(Row(label="Blank", value=f"{blank}, {job.work.material}"))
@@ -130,6 +137,8 @@ def _job_rows(outcome: Outcome) -> list[Row]:
                 f"{tool.hand}-hand hob m {tool.normal_module_mm:g} mm, Ø {tool.outside_diameter_mm:g} mm, "
                 f"{tool.starts} start(s), {tool.gashes} gashes"
             )
+        elif isinstance(tool, DiscWheel):
+            text = f"disc wheel, Ø {tool.outside_diameter_mm:g} × {tool.breadth_mm:.4g} mm"
         else:
             text = f"polygon head, {tool.inserts} insert(s) on radius {tool.tip_radius_mm:g} mm"
         rows.append(Row(label=f"Tool T{number:02d}" if number else "Tool", value=text))
@@ -160,7 +169,20 @@ def _job_rows(outcome: Outcome) -> list[Row]:
             value=f"blank {remains.blank_volume_mm3:.1f} mm³, part {remains.volume_mm3:.1f} mm³",
         )
     )
+    if outcome.chips is not None:
+        rows.append(Row(label="Chips", value=chip_words(outcome.chips)))
     return rows
+
+
+def chip_words(chips: Chips) -> str:
+    """The chips in one line."""
+    if not len(chips.volume_mm3):
+        return "no chips"
+    volume, thick = chips.volume_mm3, chips.thickness_max_mm
+    return (
+        f"{len(volume)} chips, {chips.total_mm3:.1f} mm³ in all, the largest {volume.max():.3g} mm³; "
+        f"thickness up to {thick.max():.3f} mm (rings {chips.resolution_mm:.2g} mm apart)"
+    )
 
 
 def _provenance_rows(origin: dict[str, object]) -> list[Row]:

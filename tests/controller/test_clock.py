@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from controller.alarms import AlarmClass, AlarmError, ControllerError
+from controller import sampling
+from controller.alarms import AlarmClass, ControllerError
 from controller.clock import Feedback, MachineAlarm
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.events import EventKind, OperatorAction, OperatorEvent
+from controller.events import EventKind
 from controller.offsets import Offsets
 from controller.parameters import delivered
 from controller.source import parse_program
-from controller.timeline import Timeline
 
 EVERYTHING = """G28 U0 W0
 G28 H0 V0
@@ -170,14 +170,12 @@ def test_misuse_is_refused_with_words() -> None:
         controller.commit(Feedback(ticks=6, setpoint=rows, actual=rows))
     with pytest.raises(ControllerError, match="at least 1"):
         controller.propose(0)
-    with pytest.raises(AlarmError, match=r"HT9002.*the operator's feed hold"):
-        controller.post(OperatorEvent(action=OperatorAction.FEED_HOLD))
     program = parse_program("M30")
     for tick_s in (0.0, -1.0, 0.0003, 2.0):
         with pytest.raises(ControllerError, match="fraction of a second"):
             Controller(program, parameters=delivered(), tick_s=tick_s)
-    with pytest.raises(ControllerError, match=r"unknown signal 'NOZOGC'.*NOZAGC"):
-        Controller(program, parameters=delivered(), signals={"NOZOGC": True})
+    with pytest.raises(ControllerError, match=r"unknown signal 'NOZAG'.*NOZAGC"):
+        Controller(program, parameters=delivered(), signals={"NOZAG": True})
     with pytest.raises(ControllerError, match="unknown work offset 'G60'"):
         Controller(program, parameters=delivered(), offsets=Offsets(work={"G60": {}}))
     with pytest.raises(ControllerError, match="unknown axis 'B'"):
@@ -192,7 +190,8 @@ def test_a_million_hob_turns_are_never_ticked(monkeypatch) -> None:
     def sampled(*_: object) -> None:
         raise AssertionError("a dry run sampled the motion")
 
-    monkeypatch.setattr(Timeline, "sample", sampled)
+    monkeypatch.setattr(sampling, "setpoints", sampled)
+    monkeypatch.setattr(sampling, "positions", sampled)
     program = parse_program("G81 T20 L1\nS300\nG99 G01 Z-300. F0.01\nS0\nG80\nM30")
     result = dry_run(program, delivered())
     assert result.turns["Y"] > 599_000

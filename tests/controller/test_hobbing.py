@@ -6,9 +6,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from controller.axes import Circumstances
 from controller.execution import Execution
 from controller.offsets import Offsets
 from controller.parameters import delivered
+from controller.sampling import setpoints
 from controller.source import parse_program
 
 HOME = "G28 U0 W0\nG28 H0 V0\n"
@@ -45,15 +47,16 @@ def test_commanded_error_after_a_million_hob_turns_is_zero() -> None:
     """300 rpm after a ramp of 0.5 s: 10⁶ turns are complete 200 000.25 s after S300. There, sampled from the
     closed form of every chunk, the error is zero; at random ticks on the way never more than rounding."""
     text = "G81 T20 L1\nS300\nG04 X99999.\nG04 X99999.\nG04 X9.\nS0\nG80\nM30"
-    execution = Execution(parse_program(text), delivered(), Offsets(), {}, tick_s=0.001, closed_form=True)
+    circumstances = Circumstances(rate=1000, closed_form=True)
+    execution = Execution(parse_program(text), delivered(), Offsets(), {}, circumstances=circumstances)
     while not execution.done:
         execution.step()
     timeline = execution.motion.timeline
-    hob, work = timeline.sample(np.array([200_000.25]))[0, 2:4]
+    hob, work = setpoints(timeline, np.array([200_000.25]))[0, 2:4]
     assert hob == 360e6
     assert work * 20 == hob
     ticks = np.sort(np.random.default_rng(1).integers(0, 200_000_000, 10_000)) / 1000.0
-    hob, work = timeline.sample(ticks)[:, 2:4].T
+    hob, work = setpoints(timeline, ticks)[:, 2:4].T
     error = [abs(Fraction(c) * 20 - Fraction(y)) for c, y in zip(work.tolist(), hob.tolist(), strict=True)]
     assert max(error) <= 20 * Fraction(math.ulp(18e6))
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.inclined import InclinedPair, cartesian_from_slides, slides_from_cartesian
+from controller.inclined import InclinedPair
 
 ON = {"8200#0": 1, "1006#3.X": 0}
 HOME = "G28 Y0\nG28 X0\n"
@@ -17,12 +17,12 @@ def test_law_and_inverse(angle: float, x: float, y: float) -> None:
     """Ya = Yp / cos θ, Xa = Xp − Yp tan θ; inverse Yp = Ya cos θ, Xp = Xa + Yp tan θ; the slant is (sin θ,
     cos θ)."""
     pair = InclinedPair(inclined=2, orthogonal=0, angle=angle)
-    there, back = slides_from_cartesian(3, pair), cartesian_from_slides(3, pair)
-    slides = there @ np.array([x, 0.0, y])
+    slides = pair.to_slides(x, y)
     theta = np.radians(angle)
-    assert slides == pytest.approx([x - y * np.tan(theta), 0.0, y / np.cos(theta)], abs=1e-9)
-    assert back @ slides == pytest.approx([x, 0.0, y], abs=1e-9)
-    assert back @ np.array([0.0, 0.0, 1.0]) == pytest.approx([np.sin(theta), 0.0, np.cos(theta)])
+    assert slides == pytest.approx((x - y * np.tan(theta), y / np.cos(theta)), abs=1e-9)
+    assert pair.to_slides(x, y, compensated=False) == pytest.approx((x, y / np.cos(theta)), abs=1e-9)
+    assert pair.to_cartesian(*slides) == pytest.approx((x, y), abs=1e-9)
+    assert pair.to_cartesian(0.0, 1.0) == pytest.approx((np.sin(theta), np.cos(theta)))
 
 
 CASES = [

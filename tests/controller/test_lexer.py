@@ -47,11 +47,11 @@ def test_words_and_columns(line: str, expected: list[tuple[str, str, int]]) -> N
         ("G01 @", "PS0009", 5),
         ("G01 Ø5", "PS0009", 5),
         ("G01 (open", "HT9004", 5),
-        ("#100 = 5", "HT9002", 1),
-        ("G01 X#100", "HT9002", 5),
-        ("G01 X[1+2]", "HT9002", 5),
-        ("IF [#1 EQ 2] GOTO 5", "HT9002", 1),
-        ("WHILE [#1 LT 5] DO1", "HT9002", 1),
+        ("G01 X5 #100 = 5", "PS0127", 8),
+        ("G01 X[1+2", "PS0114", 10),
+        ("G01 X#", "PS0114", 7),
+        ("G01 X]", "PS0005", 5),
+        ("G01 X5 GOTO 5", "PS0127", 8),
     ],
 )
 def test_faults_are_placed(line: str, number: str, column: int) -> None:

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from controller.sampling import positions
 from controller.segments import Phase, Track, clip, trapezoid
+from controller.wave import Wave
 
 lengths = st.floats(1e-3, 1e3)
 speeds = st.floats(0.1, 500.0)
@@ -65,19 +67,48 @@ def test_a_motion_in_two_parts_is_the_same_motion(
 
 def test_track_evaluates_its_polynomials() -> None:
     track = Track()
+    track.add(0.0, 5.0)
     track.add(1.0, 5.0, 2.0, 4.0)
     track.add(2.0, 9.0, 6.0)
     track.add(3.0, 15.0)
     time = np.array([0.0, 0.5, 1.0, 1.5, 2.0, 2.25, 3.0, 100.0])
-    expected = [0.0, 0.0, 5.0, 6.5, 9.0, 10.5, 15.0, 15.0]
-    assert track.sample(time).tolist() == expected
+    expected = [5.0, 5.0, 5.0, 6.5, 9.0, 10.5, 15.0, 15.0]
+    assert positions(track, time).tolist() == expected
     assert [track.at(t) for t in time] == expected
     assert [track.speed(t) for t in (0.5, 1.5, 2.5, 3.5)] == [0.0, 4.0, 6.0, 0.0]
     assert track.still_until(0.0) == 1.0
     assert track.still_until(1.5) == 1.5
     assert track.still_until(3.0) == math.inf
     track.forget(2.1)
-    assert track.sample(time[5:]).tolist() == expected[5:]
+    assert positions(track, time[5:]).tolist() == expected[5:]
+
+
+def test_the_sample_at_a_knot_does_not_know_what_is_planned_behind_it() -> None:
+    """An operator may change everything from a tick on: the setpoint of that tick has been given already."""
+    track = Track()
+    track.add(1.0, 0.0, 3.0)
+    before = positions(track, np.array([1.5, 2.1]))
+    track.add(2.1, 7.0, 1.0)
+    assert positions(track, np.array([1.5, 2.1])).tobytes() == before.tobytes()
+    assert (track.at(2.1), track.speed(2.1)) == (7.0, 1.0)
+
+
+def test_round_pieces_are_circles() -> None:
+    """Two axes on the same angle: the radius is kept, and a turn at constant speed is uniform."""
+    x, y = Track(), Track()
+    x.add_round(1.0, Wave(10.0, 5.0, 0.0), 0.0, 0.5, 0.1)
+    y.add_round(1.0, Wave(-3.0, 0.0, 5.0), 0.0, 0.5, 0.1)
+    time = np.linspace(0.9, 6.0, 1000)
+    moving = time > 1.0
+    dx, dy = positions(x, time)[moving] - 10.0, positions(y, time)[moving] + 3.0
+    assert np.hypot(dx, dy) == pytest.approx(5.0, abs=1e-12)
+    tau = time[moving] - 1.0
+    assert np.unwrap(np.arctan2(dy, dx)) == pytest.approx(0.5 * tau + 0.05 * tau**2, abs=1e-9)
+    assert [x.at(t) for t in time[moving]] == pytest.approx((dx + 10.0).tolist(), abs=1e-12)
+    step = 1e-6
+    for t in (1.5, 3.0, 5.9):
+        assert y.speed(t) == pytest.approx((y.at(t + step) - y.at(t - step)) / (2 * step), rel=1e-6)
+    assert x.still_until(2.0) == 2.0
 
 
 def test_a_later_command_replaces_what_was_planned_behind_it() -> None:
@@ -85,4 +116,4 @@ def test_a_later_command_replaces_what_was_planned_behind_it() -> None:
     track.add(1.0, 0.0, 1.0)
     track.add(5.0, 4.0)
     track.add(2.0, 1.0, -1.0)
-    assert track.sample(np.array([1.5, 2.0, 3.0, 6.0])).tolist() == [0.5, 1.0, 0.0, -3.0]
+    assert positions(track, np.array([1.5, 2.0, 3.0, 6.0])).tolist() == [0.5, 1.0, 0.0, -3.0]

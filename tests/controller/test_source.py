@@ -15,7 +15,7 @@ def test_text_in_any_usual_form(tmp_path: Path, encoding: str, end: str) -> None
     path = tmp_path / "a.nc"
     path.write_bytes(end.join(lines).encode(encoding))
     program = load_program(path)
-    assert program.lines[:4] == tuple(lines[:4])
+    assert program.lines == lines[:4]
     assert program.starts == {1: 1}
 
 
@@ -44,9 +44,9 @@ def test_what_is_no_program(
     assert (caught.value.alarm.number, span.line, span.column) == (number, line, column)
 
 
-def test_missing_file_and_folder_are_named(tmp_path: Path) -> None:
-    for path in (tmp_path / "none.nc", tmp_path):
-        with pytest.raises(AlarmError, match=r"error\[HT9000\]") as caught:
+def test_missing_file_and_empty_folder_are_named(tmp_path: Path) -> None:
+    for path, number in ((tmp_path / "none.nc", "HT9000"), (tmp_path, "HT9001"), (Path("a\0b"), "HT9000")):
+        with pytest.raises(AlarmError, match=rf"error\[{number}\]") as caught:
             load_program(path)
         assert str(path) in str(caught.value)
 

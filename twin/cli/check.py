@@ -1,82 +1,125 @@
 """`hobtwin check`: the controller alone."""
 
 import argparse
-import json
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
-from controller.alarms import Alarm, as_json
+from controller.alarms import AlarmError
 from controller.dry_run import DryRun, dry_run
+from controller.machine_data import MachineData, machine_data
+from controller.observed import Observed
 from controller.offsets import Offsets
 from controller.parameters import delivered
-from controller.source import load_program
+from controller.read_on import alarms_behind
+from controller.source import Program, load_program
+from controller.trace import trace_alarm, trace_line
+from twin.cli.check_result import CheckResult
+from twin.cli.check_text import as_text
+from twin.cli.given import given_by
 from twin.errors import ExitCode, InputError, Place
+
+Observer = Callable[[Observed], None]
+_JOB = "job.toml"
 
 
 def check_command(options: argparse.Namespace) -> ExitCode:
     """Check a program or a job's program. Raises HobtwinError and ControllerError."""
+    if options.trace and options.format != "text":
+        raise InputError(f"--trace with --format {options.format}", remedy="one of the two")
     target: Path = options.target
-    overrides = dict(_pair(text, "--parameter 201#4=1") for text in options.parameter)
-    asked = dict(_pair(text, "--signal NOZAGC=1") for text in options.signal)
-    signals = {name: value != "0" for name, value in asked.items()}
-    if target.is_dir() or target.suffix == ".toml":
-        from twin.job import read_job  # noqa: PLC0415 - a bare program needs none of this
-        from twin.presets import cutters_of, settings_of  # noqa: PLC0415
-
-        job = read_job(target)
-        if options.setup and options.setup != job.machine.setup:
-            raise InputError(f"--setup {options.setup}: the job says {job.machine.setup}")
-        settings = settings_of(job, cutters_of(job), parameters=overrides, signals=signals)
-        parameters, offsets, signals = settings.parameters, settings.offsets, settings.signals
-        program = load_program(job.program)
+    if target.suffix == ".toml" or (target / _JOB).is_file():
+        result = _check_job(options)
     else:
-        if not target.exists():
-            raise InputError("there is no such file", place=Place(file=str(target)))
-        parameters = delivered(options.setup or "hobbing", overrides)
-        program, offsets = load_program(target), Offsets()
-    found = dry_run(program, parameters, offsets, signals)
-    _print(found, options.format)
-    return ExitCode.FINDING if found.alarms or (options.strict and found.warnings) else ExitCode.FINE
+        result = _check_program(options)
+    if options.trace:
+        _print_messages(result)
+    elif options.format == "json":
+        from twin.cli.check_json import as_json_text  # noqa: PLC0415 - a table for people needs no json
+
+        print(as_json_text(result))
+    elif options.format == "github":
+        from twin.cli.check_json import as_github  # noqa: PLC0415
+
+        print("".join(f"{line}\n" for line in as_github(result)), end="")
+    else:
+        print("\n".join(as_text(result)))
+    return result.exit_code(strict=options.strict)
 
 
-def _pair(text: str, example: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not equals or not name or not value:
-        raise InputError(f"{text!r} is no name=value", remedy=f"valid: {example}")
-    return name.strip(), value.strip()
+def _check_program(options: argparse.Namespace) -> CheckResult:
+    target: Path = options.target
+    if not target.exists():
+        raise InputError("there is no such file", place=Place(file=str(target)))
+    setup = options.setup or "hobbing"
+    given = given_by(options, setup)
+    parameters = delivered(setup, given.parameters)
+    machine, program = machine_data(parameters), _program(target)
+    found = dry_run(
+        program,
+        parameters,
+        Offsets(),
+        given.signals,
+        events=given.events,
+        observe=_tracer(options, machine, program),
+    )
+    return _result(options, found, machine, program)
 
 
-def _print(found: DryRun, form: str) -> None:
-    if form == "json":
-        print(json.dumps(_json(found), indent=2, ensure_ascii=False))
-        return
-    for alarm in (*found.warnings, *found.alarms):
-        print(_github(alarm) if form == "github" else alarm)
-    if form == "github":
-        return
-    for name, values in (("absolute", found.absolute), ("machine", found.machine)):
-        print(f"{name:<9}" + "".join(f"  {letter}{value:.3f}" for letter, value in values.items()))
-    said = f"{len(found.alarms)} alarm(s), {len(found.warnings)} warning(s)"
-    print(f"cycle time {found.cycle_time_s:.1f} s; {said}")
+def _program(target: Path) -> Program:
+    """A file or a folder of programs."""
+    try:
+        return load_program(target)
+    except AlarmError as cause:
+        if target.is_dir() and cause.alarm.number == "HT9001":
+            place = Place(file=str(target))
+            text = f"neither a job nor a program: no {_JOB}, and no file with an O number"
+            raise InputError(text, place=place, remedy=f"valid: {_JOB}, or files such as O0001.nc") from cause
+        raise
 
 
-def _github(alarm: Alarm) -> str:
-    """A workflow command; its property values escape %, line ends, colon and comma."""
-    place = ""
-    if alarm.span:
-        file = alarm.span.file.replace("%", "%25").replace(":", "%3A").replace(",", "%2C")
-        place = f" file={file},line={alarm.span.line or 1},col={alarm.span.column or 1}"
-    text = f"{alarm.number}: {alarm.text}: {alarm.found}; valid: {alarm.remedy}"
-    return f"::{alarm.severity.value}{place}::{text.replace('%', '%25')}"
+def _check_job(options: argparse.Namespace) -> CheckResult:
+    from twin.advice.dry import advised_run  # noqa: PLC0415 - a bare program needs none of this
+    from twin.job import read_job  # noqa: PLC0415
+    from twin.presets import cutters_of, settings_of  # noqa: PLC0415
+
+    job = read_job(options.target)
+    if options.setup and options.setup != job.machine.setup:
+        raise InputError(f"--setup {options.setup}: the job says {job.machine.setup}")
+    given = given_by(options, job.machine.setup)
+    cutters = cutters_of(job)
+    settings = settings_of(
+        job, cutters, parameters=given.parameters, signals=given.signals, events=given.events
+    )
+    machine, program = machine_data(settings.parameters), load_program(job.program)
+    observe = _tracer(options, machine, program)
+    found, advice = advised_run(job, cutters, settings, program, observe=observe)
+    result = _result(options, found, machine, program)
+    return CheckResult(run=found, machine=machine, program=program, read_on=result.read_on, advice=advice)
 
 
-def _json(found: DryRun) -> dict[str, object]:
-    return {
-        "alarms": [as_json(a) for a in found.alarms],
-        "warnings": [as_json(a) for a in found.warnings],
-        "cycle_time_s": found.cycle_time_s,
-        "final": {"absolute": dict(found.absolute), "machine": dict(found.machine)},
-        "extents": {
-            letter: {"absolute": list(e.absolute), "machine": list(e.machine)}
-            for letter, e in found.extents.items()
-        },
-    }
+def _result(
+    options: argparse.Namespace, found: DryRun, machine: MachineData, program: Program
+) -> CheckResult:
+    """The result, with what stands behind the first alarm where that is asked for."""
+    read_on = ()
+    if options.keep_going and found.alarms:
+        span = found.alarms[0].span
+        line = span.line if span and span.line and span.file == program.file else 0
+        read_on = alarms_behind(program, machine.parameters, line)
+    return CheckResult(run=found, machine=machine, program=program, read_on=read_on)
+
+
+def _tracer(options: argparse.Namespace, machine: MachineData, program: Program) -> Observer | None:
+    """Prints the trace as it goes; None where none is asked for."""
+    if not options.trace:
+        return None
+    return lambda seen: print(trace_line(seen.command, seen.span, machine, program.file))
+
+
+def _print_messages(result: CheckResult) -> None:
+    """The end of a trace: its alarm belongs to it, what is to be said goes beside it."""
+    for alarm in result.run.alarms:
+        print(trace_alarm(alarm, result.program.file))
+    for message in result.messages:
+        print(message, file=sys.stderr)

@@ -2,59 +2,68 @@
 
 import argparse
 import json
-import warnings
+import re
 from pathlib import Path
-
-import numpy as np
-import trimesh
+from typing import Literal
 
 from twin.errors import ExitCode, InputError, Place
-from twin.inspection.inspection import inspect
-from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
-from twin.inspection.result import Verdict
+from twin.inspection.columns import csv_lines
+from twin.inspection.inspection import PRESSURE_DEG, inspect
+from twin.inspection.mesh_files import read_mesh
+from twin.inspection.nominal import TOLERANCE, GearNominal, Nominal, PolygonNominal
+from twin.inspection.result import Inspection, Verdict
 from twin.inspection.sheet import to_json
-from twin.job import read_job
-from twin.summary import part_lines
+from twin.inspection.solid import MeshError
+from twin.inspection.text import text_lines
 
-FORMATS = "STL, 3MF, GLB, PLY, OBJ"
+GEAR_OPTIONS = ("helix", "profile_shift", "accuracy_class", "tip_diameter", "pin_diameter", "face_width")
+"""options that say more of a gear named by --teeth and --module"""
 
 
 def inspect_command(options: argparse.Namespace) -> ExitCode:
-    """Measure a mesh in millimetres. Raises HobtwinError."""
+    """Measure a mesh. Raises HobtwinError."""
     nominal = _nominal(options)
-    vertices, faces = read_mesh(options.mesh)
-    found = inspect(vertices, faces, nominal)
+    teeth = _teeth(options.teeth_to_measure)
+    vertices, faces = read_mesh(options.mesh, options.units)
+    try:
+        found = inspect(
+            vertices,
+            faces,
+            nominal,
+            teeth=teeth,
+            pressure_deg=PRESSURE_DEG if options.pressure_angle is None else options.pressure_angle,
+            own_axis=options.find_axis,
+        )
+    except MeshError as fault:
+        raise InputError(fault.text, place=Place(file=str(options.mesh)), remedy=fault.remedy) from fault
+    if options.csv is not None:
+        _write_csv(options.csv, found)
     if options.format == "json":
         print(json.dumps(to_json(found), indent=2, ensure_ascii=False, allow_nan=False))
     else:
-        print("\n".join(part_lines(found)))
+        print("\n".join(text_lines(found)))
     unfit = found.verdict is Verdict.OUT or found.kind is None
     return ExitCode.FINDING if unfit else ExitCode.FINE
 
 
-def read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) [mm] and faces (m, 3), equal vertices joined. GLB is in metres by definition.
-
-    Raises InputError for what cannot be read as a mesh.
-    """
-    place = Place(file=str(path))
-    if not path.is_file():
-        raise InputError("there is no such file", place=place)
+def _write_csv(path: Path, found: Inspection) -> None:
+    if found.gear is None:
+        return
     try:
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            mesh = trimesh.load_mesh(path, process=False)
-    except Exception as cause:  # readers raise whatever they please on damaged files
-        raise InputError(
-            "not a readable mesh",
-            place=place,
-            remedy=f"valid: {FORMATS}",
-        ) from cause
-    if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
-        raise InputError("the file holds no triangles", place=place, remedy=f"valid: {FORMATS}")
-    mesh.merge_vertices(merge_tex=True, merge_norm=True)
-    scale = 1000.0 if path.suffix.lower() in (".glb", ".gltf") else 1.0
-    return np.asarray(mesh.vertices, dtype=float) * scale, np.asarray(mesh.faces, dtype=np.int64)
+        path.write_text("\n".join(csv_lines(found.gear)) + "\n", encoding="utf-8")
+    except OSError as cause:
+        raise InputError(f"cannot be written: {cause.strerror}", place=Place(file=str(path))) from cause
+
+
+def _teeth(text: str | None) -> tuple[int, ...] | Literal["all"] | None:
+    """Return the teeth named by "1,6,11" or "all"; None where none are."""
+    if text is None:
+        return None
+    if text == "all":
+        return "all"
+    if not re.fullmatch(r"\d+(,\d+)*", text):
+        raise InputError(f"--teeth-to-measure {text}", remedy="valid: all, or numbers such as 1,6,11,16")
+    return tuple(int(number) for number in text.split(","))
 
 
 def _nominal(options: argparse.Namespace) -> Nominal | None:
@@ -62,23 +71,40 @@ def _nominal(options: argparse.Namespace) -> Nominal | None:
     polygon = options.sides is not None or options.across_flats is not None
     if gear + polygon + bool(options.job) > 1:
         raise InputError("a nominal is named twice", remedy="one of --job, --teeth …, --sides …")
-    if options.accuracy_class is not None and not gear:
-        raise InputError("--class judges a nominal gear", remedy="add --teeth and --module")
+    loose = [name for name in GEAR_OPTIONS if getattr(options, name) is not None]
+    if loose and not gear:
+        name = "class" if loose[0] == "accuracy_class" else loose[0].replace("_", "-")
+        raise InputError(f"--{name} belongs to a nominal gear", remedy="add --teeth and --module")
+    if options.tolerance is not None and not polygon:
+        raise InputError("--tolerance belongs to a nominal polygon", remedy="add --sides and --across-flats")
     if options.job:
+        from twin.job import read_job  # noqa: PLC0415 - a bare mesh needs none of this
+
         return read_job(options.job).nominal
     if gear:
-        if options.teeth is None or options.module is None:
-            raise InputError("a nominal gear needs --teeth and --module")
-        return GearNominal(
-            number_of_teeth=options.teeth,
-            normal_module_mm=options.module,
-            helix_angle_deg=options.helix,
-            profile_shift=options.profile_shift,
-            normal_pressure_angle_deg=options.pressure_angle,
-            accuracy_class=options.accuracy_class,
-        )
+        return _gear(options)
     if polygon:
         if options.sides is None or options.across_flats is None:
             raise InputError("a nominal polygon needs --sides and --across-flats")
-        return PolygonNominal(number_of_sides=options.sides, across_flats_mm=options.across_flats)
+        return PolygonNominal(
+            number_of_sides=options.sides,
+            across_flats_mm=options.across_flats,
+            tolerance=options.tolerance or TOLERANCE,
+        )
     return None
+
+
+def _gear(options: argparse.Namespace) -> GearNominal:
+    if options.teeth is None or options.module is None:
+        raise InputError("a nominal gear needs --teeth and --module")
+    return GearNominal(
+        number_of_teeth=options.teeth,
+        normal_module_mm=options.module,
+        helix_angle_deg=options.helix or 0.0,
+        profile_shift=options.profile_shift or 0.0,
+        normal_pressure_angle_deg=PRESSURE_DEG if options.pressure_angle is None else options.pressure_angle,
+        accuracy_class=options.accuracy_class,
+        tip_diameter_mm=options.tip_diameter,
+        pin_diameter_mm=options.pin_diameter,
+        face_width_mm=options.face_width,
+    )

@@ -5,6 +5,7 @@ import math
 import sys
 from pathlib import Path
 
+from twin.cli.given import events_of_options
 from twin.errors import ExitCode, InputError
 from twin.job import read_job
 from twin.outcome import Options, Outcome
@@ -20,7 +21,9 @@ def run_command(options: argparse.Namespace) -> ExitCode:
         raise InputError(f"--cell-mm {cell:g}", remedy="valid: above 0, for example 0.1")
     job = read_job(options.job)
     out = options.out or Path("out") / job.name
-    settings = Options(ideal=options.ideal, cell_mm=cell)
+    settings = Options(
+        ideal=options.ideal, cell_mm=cell, chips=options.chips, events=events_of_options(options)
+    )
     if options.quiet or not sys.stderr.isatty():
         reporter: Reporter = Silent() if options.quiet else Lines()
         outcome = run_job(job, out, settings, reporter)
@@ -34,6 +37,7 @@ def run_command(options: argparse.Namespace) -> ExitCode:
 
 
 def _code(outcome: Outcome, *, strict: bool) -> ExitCode:
-    if strict and (outcome.session.warnings or outcome.cut.notes):
+    warned = any(advice.warns for advice in outcome.advice)
+    if strict and (outcome.session.warnings or warned or outcome.cut.notes):
         return ExitCode.FINDING
     return outcome.exit_code

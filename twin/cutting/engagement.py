@@ -64,6 +64,19 @@ def inner_radius(cutter: Cutter) -> float:
     return max(cutter.profile.root, 0.5 * cutter.radius)
 
 
+def twisted(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float:
+    """How far the edges' twist turns them about the axis at most, where they can meet stock [rad]."""
+    if not cutter.twist:
+        return 0.0
+    axis = motion.basis[2]
+    step = np.linalg.norm(np.diff(motion.centre, axis=0), axis=1).max(initial=0.0)
+    near = ~stock.clear_of(motion.centre, motion.basis, cutter.radius + step)
+    middle = np.array([0.0, 0.0, 0.5 * (stock.z_low + stock.z_high)])
+    half = 0.5 * (stock.z_high - stock.z_low) * abs(axis[2]) + stock.radius * math.hypot(axis[0], axis[1])
+    off = np.abs((middle - motion.centre[near]) @ axis - cutter.shift)
+    return abs(cutter.twist) * (float(off.max(initial=0.0)) + half + step)
+
+
 def stock_speed(motion: CutterMotion, radius: float) -> Floats:
     """(n - 1,) bound on how far stock within `radius` moves against the tool carrier in each sample [mm]."""
     slides = np.linalg.norm(np.diff(motion.centre, axis=0), axis=1)
@@ -87,7 +100,9 @@ def scraped(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float
     than the stock moves past it.
     """
     speed = stock_speed(motion, stock.radius)
-    slow = inner_radius(cutter) * np.abs(np.diff(motion.tool_angle)) <= speed
+    edge = cutter.lever(inner_radius(cutter)) * np.abs(np.diff(motion.tool_angle))
+    # a body of revolution cuts all around as long as it turns at all
+    slow = edge == 0.0 if cutter.revolved else edge <= speed
     turning = np.zeros(len(slow) + 1, dtype=np.int64)
     first, last = turning_runs(cutter, motion)
     np.add.at(turning, first, 1)

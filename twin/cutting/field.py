@@ -5,8 +5,10 @@ its depth in the edge's outline at that instant is the pass's field value, posit
 away. The removed stock is where the largest of all passes is positive; that largest value is the signed
 distance to the cut surface, but for the slow motion of the stock in the rake plane.
 
-A pass is made of *bites*: what one tooth of the edge, or the land between two, removes of it. Their outlines
-are convex, and that is what bounds rest on; the field of a pass is that of its deepest bite.
+A pass is made of *bites*: what one convex piece of a tooth of the edge, or the land between the teeth,
+removes of it. That they are convex is what bounds rest on; the field of a pass is that of its deepest bite.
+
+Where the rake face is a helicoid, the edge at axial position s stands `twist` · s further about the axis.
 """
 
 import math
@@ -16,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
-from twin.cutting.engagement import StockCylinder, inner_radius
+from twin.cutting.engagement import StockCylinder, inner_radius, twisted
 from twin.cutting.meeting import Meeting, State
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passes import Passes, find_passes
@@ -44,7 +46,7 @@ class DepthField:
         self, cutter: Cutter, motion: CutterMotion, stock_radius: float, stock_z: tuple[float, float]
     ) -> None:
         self.cutter = cutter
-        self._inner = inner_radius(cutter)
+        self._lever = cutter.lever(inner_radius(cutter))
         self.passes: Passes = find_passes(cutter, motion, stock_radius, stock_z)
         self._basis = motion.basis
         self._mount = motion.mount
@@ -56,15 +58,23 @@ class DepthField:
         samples = np.arange(rows.shape[1], dtype=float)
         at = [np.interp(self.passes.at, samples, row) for row in rows]
         self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
-        spread = self._spread(StockCylinder.around(motion.mount, stock_radius, stock_z))
-        teeth = cutter.profile.teeth(*spread)
-        has_land = math.isfinite(cutter.profile.root)
-        self._land = len(teeth)
-        self.bites: int = len(teeth) + has_land
-        """of a pass: the teeth that can reach the stock and, last, the land between them"""
-        pitch = cutter.profile.pitch if math.isfinite(cutter.profile.pitch) else 0.0
-        self._middle = np.append(teeth * pitch, 0.0)[: self.bites]
-        gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < math.pi
+        profile = cutter.profile
+        stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
+        spread = self._spread(stock)
+        teeth = profile.teeth(*spread)
+        pieces = len(profile.pieces)
+        has_land = math.isfinite(profile.root)
+        self._land = len(teeth) * pieces
+        self.bites: int = self._land + has_land
+        """of a pass: the pieces of the teeth that can reach the stock and, last, the land between them"""
+        pitch = profile.pitch if math.isfinite(profile.pitch) else 0.0
+        self.tooth: Ints = np.append(np.repeat(teeth, pieces), 0)[: self.bites]
+        """(bites,) number of each bite's tooth along the edge; 0 for the land"""
+        self._middle = np.asarray(self.tooth * pitch, dtype=np.float64)
+        self._piece = np.append(np.tile(np.arange(pieces), len(teeth)), pieces)[: self.bites]
+        self._half_width = np.tile([piece.half_width for piece in profile.pieces], len(teeth))
+        swing = math.pi + twisted(cutter, motion, stock)
+        gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < swing
         self._partial: NDArray[np.bool_] = np.asarray(gap.any(axis=1))
 
     @property
@@ -87,7 +97,7 @@ class DepthField:
         return self._meeting(points, index, self.cutter.profile.depth, gradient=gradient)
 
     def evaluate_bite(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
-        """As `evaluate`, for bites: depth in one tooth, or in the land between the teeth, alone.
+        """As `evaluate`, for bites: depth in one piece of a tooth, or in the land between the teeth, alone.
 
         Their outlines are convex, so their depths are concave; the field of a pass is its deepest bite's.
         """
@@ -95,13 +105,8 @@ class DepthField:
 
         def outline(s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
             number = bite - index * self.bites
-            depth = self.cutter.profile.tooth_depth(self._middle.take(number), s, rho)
-            land = np.flatnonzero(number == self._land)
-            if len(land):
-                depth[0][land] = self.cutter.profile.root - rho[land]
-                depth[1][land] = 0.0
-                depth[2][land] = -1.0
-            return depth
+            piece, middle = self._piece.take(number), self._middle.take(number)
+            return self.cutter.profile.piece_depth(piece, middle, s, rho)
 
         return self._meeting(points, index, outline, gradient=gradient)
 
@@ -138,8 +143,13 @@ class DepthField:
             by_rho[partial] = np.where(ends, to_rake, by_rho[partial])
             by_turn[partial] = np.where(ends, rate, 0.0)
             follows[partial] = met
-        slope = self._gradient(state, by_s, by_rho, by_turn, follows) if gradient else np.zeros((0, 3))
+        slope = self._gradient(state, (by_s, by_rho), by_turn, follows) if gradient else np.zeros((0, 3))
         return Meeting(depth, slope, along, rho, end)
+
+    def outline(self, bite: Ints, s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
+        """Depth in the bites' outlines at places (m,) of their rake planes, and its derivatives."""
+        number = bite % self.bites
+        return self.cutter.profile.piece_depth(self._piece.take(number), self._middle.take(number), s, rho)
 
     def floors(self, points: Floats, corners: Floats, bite: Ints, radius: Floats) -> Floats:
         """Lower bounds (c, m) of the bites' depths, in the convex hulls of `corners` (m, c, 3).
@@ -165,17 +175,18 @@ class DepthField:
           bite concave in that plane, tangent + bent bounds the field from above, and a convex combination
           of its values − 2 bent from below.
 
-        Writing M(p) = G(p, t(p)) for the map and a for the edge's speed across the rake plane, slant = v/a,
+        Writing M(p) = G(p, t(p)) for the map and a for the edge's speed across the rake face, slant = v/a,
         turn = C'/a: |G_pp| <= 1/rho, |G_pt| <= C' + v/rho, |G_tt| <= C'v + v²/rho, |t_p| <= 1/a and
         |t_pp| <= (1/rho + 2 (2 slant/rho + turn) + ...)/a, in sum (1 + slant)^4/rho + 2 (1 + slant)² turn.
-        A velocity jump between two samples adds its share of the way that remains.
+        A velocity jump between two samples adds its share of the way that remains. On a helicoid the same
+        holds with a = `Cutter.lever` · turn − v, see docs/kernel.md.
         """
         index = bite // self.bites
         p = self.passes
         # no point of the block can meet the edge further in than this, if `change` is less than 2 radius
         low = np.maximum(meeting.rho - 2.0 * radius, 1e-6)
         own = p.slant.take(index)
-        nearer = self._inner / ((1.0 + own) * low)
+        nearer = self._lever / ((1.0 + own) * self.cutter.lever(low))
         share = own * nearer
         proved = share < STEEPEST
         slant = np.where(proved, share / (1.0 - np.where(proved, share, 0.0)), 0.0)
@@ -188,7 +199,9 @@ class DepthField:
         creep = p.creep.take(index)
         bent = 0.5 * curvature * radius * radius + jolt * radius * jumps + creep
         partial = self._partial.take(index)
-        change = np.where(partial, radius * (1.0 + WIDEST + slant), change) + creep
+        # the way to the rake face where the sweep ends: rho times an angle
+        far = meeting.rho + 2.0 * radius
+        change = np.where(partial, radius * (far / self.cutter.lever(far) + WIDEST + slant), change) + creep
         change[~proved] = np.inf
         bent[~proved | partial] = np.inf
         return change, bent
@@ -209,8 +222,9 @@ class DepthField:
         change, _ = self.bound(meeting, index * self.bites, radius)
         profile = self.cutter.profile
         tall = np.flatnonzero(profile.tip - meeting.rho + change > 0)
-        beside = np.abs(meeting.s[tall, None] - self._middle) - change[tall, None]
-        within = beside < profile.half_width
+        beside = np.abs(meeting.s[tall, None] - self._middle[: self._land]) - change[tall, None]
+        within = np.zeros((len(tall), self.bites), dtype=bool)
+        within[:, : self._land] = beside < self._half_width
         if self._land < self.bites:
             within[:, self._land] = profile.root - meeting.rho[tall] + change[tall] > 0
         row, number = np.nonzero(within)
@@ -305,6 +319,9 @@ class DepthField:
         tool = tool + part * d_tool
         lag = tool - angle - np.arctan2(b, a)
         lag_rate = d_tool - (a * b_rate - b * a_rate) / rho2
+        if self.cutter.twist:
+            lag += self.cutter.twist * (s - self.cutter.shift)
+            lag_rate += self.cutter.twist * s_rate
         lag_rate[lag_rate == 0.0] = STILL
         return State(
             cos=cos,
@@ -320,15 +337,19 @@ class DepthField:
             tool_rate=d_tool,
         )
 
-    def _gradient(
-        self, state: State, by_s: Floats, by_rho: Floats, by_turn: Floats, follows: Floats
-    ) -> Floats:
-        """Gradient (m, 3) in the part frame; the meeting instant `follows` the point (1) or not (0)."""
+    def _gradient(self, state: State, by: tuple[Floats, Floats], by_turn: Floats, follows: Floats) -> Floats:
+        """Gradient (m, 3) in the part frame; the meeting instant `follows` the point (1) or not (0).
+
+        `by` are the derivatives of the depth by s and rho, `by_turn` that by the way across the rake face.
+        """
         a, b = state.side / state.rho
-        # d instant / d point = e_psi / (rho lag_rate)
+        by_s, by_rho = by
+        # d instant / d point = (e_psi / rho − twist e_s) / lag_rate
         drift = (
             follows * (by_s * state.s_rate + by_rho * state.rho_rate) / (state.rho * state.lag_rate) + by_turn
         )
+        if self.cutter.twist:
+            by_s = by_s - drift * state.rho * self.cutter.twist
         across = np.stack([by_rho * a - drift * b, by_rho * b + drift * a, by_s])
         gx, gy, gz = self._basis.T @ across
         turned = np.stack([gx * state.cos + gy * state.sin, gy * state.cos - gx * state.sin, gz])

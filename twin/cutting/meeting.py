@@ -1,6 +1,6 @@
 """A point of the stock and a cutting edge, at the instant when they meet and near it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ class Meeting:
     """(m,) distance from the tool axis [mm]"""
     instant: Floats
     """(m,) sample (fractional) of the motion at which they meet"""
+    slack: Floats = field(default_factory=lambda: np.zeros(0))
+    """(m,) [mm] to add to what rises above the tangent; of disc cutters, where the gradient was asked for"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,17 @@
 """The tool's motion past the work, as the cutting kernel sees it."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.errors import InputError
+
 Floats = NDArray[np.float64]
+
+SQUARE = 1e-9
+"""How far a frame may be off square."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,3 +44,28 @@ class CutterMotion:
     """(3, 3) constant; rows: direction of tool angle 0, u × that, u = tool axis in its positive sense"""
     mount: RigidTransform = field(default_factory=RigidTransform)
     """part frame -> work spindle frame; identity where the part is clamped without fault"""
+
+    def __post_init__(self) -> None:
+        """Raise InputError for a recording that is no motion: too short, not finite, time not increasing."""
+        n = len(self.time_s)
+        if n < 2:
+            raise InputError(f"a recording of {n} sample(s) holds no motion", remedy="valid: 2 or more")
+        shapes = {"time_s": (n,), "work_angle": (n,), "tool_angle": (n,), "centre": (n, 3), "basis": (3, 3)}
+        for name, shape in shapes.items():
+            values = getattr(self, name)
+            if values.shape != shape:
+                raise InputError(f"recording, {name}: expected {shape}, got {values.shape}")
+            if not np.isfinite(values).all():
+                first = int(np.flatnonzero(~np.isfinite(values).reshape(len(values), -1).all(axis=1))[0])
+                raise InputError(f"recording, {name}: sample {first} is not a finite number")
+        back = np.flatnonzero(np.diff(self.time_s) <= 0)
+        if len(back):
+            k = int(back[0])
+            raise InputError(
+                f"recording: time does not increase from sample {k} ({self.time_s[k]:g} s) to the next "
+                f"({self.time_s[k + 1]:g} s)"
+            )
+        if not np.allclose(self.basis @ self.basis.T, np.eye(3), atol=SQUARE) or not math.isclose(
+            float(np.linalg.det(self.basis)), 1.0, abs_tol=SQUARE
+        ):
+            raise InputError("recording, basis: its rows are no right-handed frame")

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
-from twin.cutting.engagement import StockCylinder, inner_radius, stock_speed, turning_runs
+from twin.cutting.engagement import StockCylinder, inner_radius, stock_speed, turning_runs, twisted
 from twin.cutting.motion import CutterMotion
 
 Floats = NDArray[np.float64]
@@ -60,6 +60,8 @@ def find_passes(
 ) -> Passes:
     """All passes that may touch a stock cylinder of this radius between these z, in the part frame."""
     stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
+    # a twisted edge comes to the stock on its far side sooner or later than on its near side
+    reach = REACH + twisted(cutter, motion, stock)
     rows: list[tuple[Floats, Floats, Ints, Floats, Floats]] = []
     for a, b in turning_runs(cutter, motion).T:
         angle = motion.tool_angle[a : b + 1]
@@ -67,8 +69,8 @@ def find_passes(
         if angle[-1] < angle[0]:
             angle, index = angle[::-1], index[::-1]
         for gash, offset in enumerate(cutter.gash_angle):
-            lowest = math.ceil((angle[0] - REACH + offset) / (2 * math.pi))
-            highest = math.floor((angle[-1] + REACH + offset) / (2 * math.pi))
+            lowest = math.ceil((angle[0] - reach + offset) / (2 * math.pi))
+            highest = math.floor((angle[-1] + reach + offset) / (2 * math.pi))
             target = 2 * math.pi * np.arange(lowest, highest + 1) - offset
             at = np.interp(target, angle, index)
             ones = np.ones(len(target))
@@ -79,7 +81,7 @@ def find_passes(
     at, angle, gash, first, last = (np.concatenate(column) for column in zip(*rows, strict=True))
     order = np.lexsort((gash, angle, at))
     edges = at[order], angle[order], gash[order], first[order], last[order]
-    passes = _bounded(cutter, motion, stock.radius, edges)
+    passes = _bounded(cutter, motion, stock.radius, reach, edges)
     samples = np.arange(len(motion.tool_angle), dtype=float)
     centre = np.stack([np.interp(passes.at, samples, column) for column in motion.centre.T], axis=1)
     keep = ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried)
@@ -90,6 +92,7 @@ def _bounded(
     cutter: Cutter,
     motion: CutterMotion,
     stock_radius: float,
+    reach: float,
     edges: tuple[Floats, Floats, Ints, Floats, Floats],
 ) -> Passes:
     """Passes from their (at, angle, gash, first, last), with the bounds that the culling proofs need."""
@@ -97,17 +100,17 @@ def _bounded(
     samples = np.arange(len(motion.tool_angle), dtype=float)
     tool_rate = np.abs(np.diff(motion.tool_angle))
     speed = stock_speed(motion, stock_radius)
-    # window of samples in which the edge is within REACH of the work's side
+    # window of samples in which the edge is within `reach` of the work's side
     way = np.where(motion.tool_angle[last.astype(int)] > motion.tool_angle[first.astype(int)], 1.0, -1.0)
     rising = np.maximum.accumulate(np.cumsum(np.concatenate([[0.0], tool_rate])))
     centre = np.interp(at, samples, rising) + way * (angle - np.interp(at, samples, motion.tool_angle))
-    low = np.clip(np.interp(centre - REACH, rising, samples), first, last)
-    high = np.clip(np.interp(centre + REACH, rising, samples), first, last)
+    low = np.clip(np.interp(centre - reach, rising, samples), first, last)
+    high = np.clip(np.interp(centre + reach, rising, samples), first, last)
     a = np.minimum(np.floor(low), len(samples) - 2).astype(int)
     b = np.minimum(np.maximum(np.ceil(high).astype(int), a + 1), len(samples) - 1)
     path = np.concatenate([[0.0], np.cumsum(speed)])
     slides = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(motion.centre, axis=0), axis=1))])
-    inner = inner_radius(cutter)
+    inner = cutter.lever(inner_radius(cutter))
     across = np.maximum(inner * tool_rate - speed, 0.0)
     slow = across == 0.0
     creep = np.concatenate([[0.0], np.cumsum(np.where(slow, speed, 0.0))])

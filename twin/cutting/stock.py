@@ -1,4 +1,4 @@
-"""The blank, and what manifold3d leaves of it."""
+"""What manifold3d leaves of the blank."""
 
 import math
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ import manifold3d
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
 from twin.errors import PartError
 
@@ -17,34 +18,9 @@ CHORD = 2.5e-4
 """How far the blank's facets may lie inside its circles [mm]."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Blank:
-    """A turned blank from z = 0 (front face) to z = −length."""
-
-    diameter_mm: float
-    length_mm: float
-    bore_mm: float = 0.0
-
-    @property
-    def radius(self) -> float:
-        """Outer radius [mm]."""
-        return self.diameter_mm / 2.0
-
-    @property
-    def z_range(self) -> tuple[float, float]:
-        """Lowest and highest z [mm]."""
-        return -self.length_mm, 0.0
-
-    def outline(self) -> Floats:
-        """(n, 2) of (r, z), counter-clockwise; r = 0 where it reaches the axis."""
-        low, high = self.z_range
-        inner = self.bore_mm / 2.0
-        return np.array([[inner, low], [self.radius, low], [self.radius, high], [inner, high]])
-
-    def solid(self) -> manifold3d.Manifold:
-        """The blank with facets within CHORD of its circles, vertices on them."""
-        segments = math.ceil(math.pi / math.acos(1.0 - CHORD / self.radius))
-        return lathe(self.outline(), segments)
+def blank_solid(blank: Blank) -> manifold3d.Manifold:
+    """The blank with facets within CHORD of its circles, vertices on them."""
+    return lathe(blank.outline(), math.ceil(math.pi / math.acos(1.0 - CHORD / blank.radius)))
 
 
 def lathe(outline: Floats, segments: int) -> manifold3d.Manifold:
@@ -101,7 +77,7 @@ class Remains:
 
 def subtract(blank: Blank, surface: Surface | None) -> Remains:
     """One boolean: the blank without the removed solid. The largest piece is the part."""
-    whole = blank.solid()
+    whole = blank_solid(blank)
     left = whole if surface is None else whole - solid(surface.vertices, surface.faces)
     if left.is_empty():
         raise PartError(

@@ -1,11 +1,11 @@
 """All tools' depth fields as one: their bites numbered through."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutting.field import DepthField
+from twin.cutting.fields import Field
 from twin.cutting.local import ROUNDING, Tangents
 from twin.cutting.meeting import Meeting
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join, leaders
@@ -29,7 +29,7 @@ class Deepest:
 class Sweep:
     """The union of everything that the tools of a run sweep."""
 
-    def __init__(self, fields: tuple[DepthField, ...]) -> None:
+    def __init__(self, fields: tuple[Field, ...]) -> None:
         self.fields = fields
         counts = [f.count for f in fields]
         self._first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
@@ -58,12 +58,13 @@ class Sweep:
             if (here := self._of(n, bite)).any()
         ]
         m = len(points)
-        out = Meeting(np.zeros(m), np.zeros((m if gradient else 0, 3)), *(np.zeros(m) for _ in range(3)))
+        out = Meeting(np.zeros(m), np.zeros((m if gradient else 0, 3)), *(np.zeros(m) for _ in range(4)))
         for here, piece in pieces:
             for name in ("depth", "s", "rho", "instant"):
                 getattr(out, name)[here] = getattr(piece, name)
             if gradient:
                 out.gradient[here] = piece.gradient
+                out.slack[here] = piece.slack if len(piece.slack) else 0.0
         return out
 
     def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats]:
@@ -73,9 +74,7 @@ class Sweep:
         out = (np.zeros(len(index)), np.zeros(len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
-            part = Meeting(
-                *(getattr(meeting, name)[here] for name in ("depth", "gradient", "s", "rho", "instant"))
-            )
+            part = Meeting(*(v[here] if len(v := getattr(meeting, f.name)) else v for f in fields(Meeting)))
             for whole, piece in zip(
                 out, f.bound(part, index[here] - self._first[n], radius[here]), strict=True
             ):

@@ -1,7 +1,5 @@
-"""Mesh in, deviations out. Uses neither the controller nor the machine: any mesh will do."""
+"""Mesh in, deviations out. Uses neither the controller nor the machine: any mesh will do.
 
-from twin.inspection.deviation import deviation_map
-from twin.inspection.inspection import inspect
-from twin.inspection.sheet import to_json
-
-__all__ = ["deviation_map", "inspect", "to_json"]
+The whole way is `twin.inspection.inspection.inspect`; the package itself imports nothing, so that whoever
+only needs a nominal or a tolerance does not load what measures.
+"""

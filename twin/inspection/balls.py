@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from twin.inspection.flanks import Placed, on_circles
 from twin.inspection.involute import Involute
+from twin.inspection.reading import Placed, read_flanks
 from twin.inspection.solid import Floats, Solid
 
 # fmt: off
@@ -33,14 +33,18 @@ def choose_ball(gear: Involute, *, tip_radius: float) -> float | None:
 
 def measure_balls(
     solid: Solid, placed: Placed, ball: float, *, tip_radius: float
-) -> tuple[Floats | None, str]:
-    """Return the radius (z,) [mm] of a ball's centre in every gap, from tooth 1 clockwise, or None and why.
+) -> tuple[tuple[Floats, Floats] | None, str]:
+    """Return where balls lie in the gaps, or None and why.
 
     Args:
         solid: the gear.
         placed: its geometry in place.
         ball: diameter [mm].
         tip_radius: where the shortest tooth ends [mm].
+
+    Returns:
+        the radius (z,) [mm] of a ball's centre in every gap, from tooth 1 clockwise, and (z,) [mm] how much
+        of it the mesh's chords make.
 
     """
     gear = placed.gear
@@ -50,15 +54,21 @@ def measure_balls(
     heights = np.array([placed.middle - abs(above), placed.middle + abs(above)])
     if heights[0] <= placed.low or heights[1] >= placed.high:
         return None, f"a ball of {ball:g} mm does not touch both flanks within this face width"
-    left, right = on_circles(solid, placed, np.unique(heights), np.array([radius]))
+    read = read_flanks(solid, placed, np.unique(heights), np.array([radius]))
     left_plane, right_plane = (-1, 0) if above > 0 else (0, -1)
-    facing = np.roll(
-        left[left_plane, 0], -1
-    )  # a gap lies between a tooth's right flank and the next one's left
-    lift = (right[right_plane, 0] + facing) / 2000 / gear.base_radius
-    if not np.isfinite(lift).all():
+
+    def lift(table: Floats) -> Floats:
+        """A gap lies between a tooth's right flank and the next one's left."""
+        facing = np.roll(table[0, left_plane, 0], -1)
+        return (table[1, right_plane, 0] + facing) / 2000 / gear.base_radius
+
+    found = lift(read.deviation)
+    if not np.isfinite(found).all():
         return None, "the flanks have holes where the balls touch"
-    return gear.base_radius / np.cos(gear.ball_angle(ball, lift)), ""
+    centres, smooth = (
+        gear.base_radius / np.cos(gear.ball_angle(ball, each)) for each in (found, found - lift(read.facet))
+    )
+    return (centres, centres - smooth), ""
 
 
 def over_balls(centres: Floats, ball: float) -> float:

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from twin.inspection.flanks import Placed
 from twin.inspection.involute import geometry
+from twin.inspection.reading import Placed
 from twin.inspection.result import GearResult, Inspection, PolygonResult
 from twin.inspection.solid import Floats, Ints, Solid, check_solid
 

@@ -1,210 +1,230 @@
-"""Deviations of gear flanks: profile and helix traces, pitch (inspection.md, sections 1 and 4).
-
-All of them are one thing: the mesh crosses a circle about the axis where a tooth flank should cross it at a
-known angle; the difference, times the base radius, is the deviation along the tangent to the base cylinder in
-the transverse plane, which is normal to the flank there.
-"""
+"""Left and right flanks of a gear: profile and helix traces, pitch (inspection.md, sections 1 and 4)."""
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from twin.inspection.involute import Involute
-from twin.inspection.result import Flank, Trace
-from twin.inspection.sections import (
-    Crossings,
-    circle_crossings,
-    faces_at_height,
-    faces_at_radius,
-    plane_segments,
-)
-from twin.inspection.solid import Floats, Ints, Solid
+from twin.inspection.reading import SENSES, Placed, pitch_readings, read_flanks
+from twin.inspection.result import Figures, Flank, Trace, Wave
+from twin.inspection.solid import Floats, Solid
+from twin.inspection.trace import cut_off, evaluate
+from twin.inspection.usable import Usable
+from twin.inspection.waviness import waviness
 
 POINTS = 480
 """points of a trace"""
 TRACES = 4
 """teeth traced, equally spaced"""
 NO_SLOPE = 5e-3
-"""a mean slope below this [µm] is the noise of the figures: none"""
+"""a mean slope or crowning below this [µm] is the noise of the figures: none"""
 TIP_LIMIT = 0.95
-"""profile evaluation ends here on the way from form to tip diameter, in roll length (ISO 1328-1:2013)"""
+"""part of the way from its start to the tip form diameter, in roll length, that a profile is evaluated"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Placed:
-    """A gear geometry in its place about the axis."""
+class Measured:
+    """All flanks read: what the figures of a gear are made of."""
 
-    gear: Involute
-    phase: float
-    """angle [rad] of tooth 1's centre at `middle`"""
-    middle: float
-    """z [mm] where profile and pitch are measured"""
-    low: float
-    """z [mm] where the teeth begin"""
-    high: float
-    """z [mm] where they end"""
+    left: Flank
+    right: Flank
+    profile_range: tuple[float, float]
+    """evaluated roll lengths [mm]"""
+    largest_facet_um: float
+    """largest departure of the mesh's chords in the evaluated ranges"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Scan:
+    """All teeth read along profile or helix."""
+
+    position: Floats
+    """(m,) roll length or z [mm]"""
+    limits: tuple[float, float]
+    """evaluated range of `position`"""
+    deviation: Floats
+    """(2, m, z) left and right [µm]"""
+    facet: Floats
+    """(2, m, z) the part of it that chords put in [µm]"""
+    turn: Floats
+    """(2, m) rotation angle of the points from their tooth [rad]"""
+    rise: tuple[float, float]
+    """sign of the slope where material rises with position, left and right"""
 
     @property
-    def helix_range(self) -> tuple[float, float]:
-        """z [mm] over which helices are evaluated: b less the smaller of 5 % b and one module at each end."""
-        margin = min(0.05 * (self.high - self.low), self.gear.module)
-        return self.low + margin, self.high - margin
+    def inside(self) -> np.ndarray:
+        """(m,) within the evaluated range."""
+        return (self.position >= self.limits[0]) & (self.position <= self.limits[1])
 
-    def turned_back(self, angle: Floats, z: Floats) -> Floats:
-        """Return angles [rad] as seen from tooth 1, the twist of the helix taken out."""
-        return angle - self.phase - self.gear.twist * (z - self.middle)
+    @property
+    def largest_facet_um(self) -> float:
+        """Largest departure of chords within the range."""
+        values = np.abs(self.facet[:, self.inside])
+        return float(np.max(values, initial=0.0, where=np.isfinite(values)))
 
-    def tooth(self, angle: Floats) -> tuple[Ints, Floats]:
-        """Return the nearest tooth (0 = tooth 1, clockwise) and the angle [rad] from its centre."""
-        pitch = 2 * math.pi / self.gear.teeth
-        steps = np.round(-angle / pitch).astype(np.int64)
-        return steps % self.gear.teeth, angle + steps * pitch
-
-
-def deviations(crossings: Crossings, heights: Floats, radii: Floats, placed: Placed) -> tuple[Floats, Floats]:
-    """Return the left and right flanks' deviations [µm], (planes, circles, z) each, + = material outside.
-
-    NaN where a flank does not cross a circle exactly once.
-    """
-    height, radius = heights[crossings.plane], radii[crossings.circle]
-    angle = placed.turned_back(crossings.angle, height)
-    side = np.where(crossings.left, 1.0, -1.0)
-    tooth, offset = placed.tooth(angle - side * placed.gear.half_tooth(radius))
-    value = 1000 * placed.gear.base_radius * side * offset
-    shape = (len(heights), len(radii), placed.gear.teeth)
-    place = np.ravel_multi_index((crossings.plane, crossings.circle, tooth), shape)
-    left, right = (
-        _table(place[chosen], value[chosen], shape) for chosen in (crossings.left, ~crossings.left)
-    )
-    return left, right
-
-
-def _table(place: Ints, value: Floats, shape: tuple[int, int, int]) -> Floats:
-    size = math.prod(shape)
-    hits = np.bincount(place, minlength=size)
-    total = np.bincount(place, weights=value, minlength=size)
-    return np.where(hits == 1, total, np.nan).reshape(shape)
-
-
-def locate(solid: Solid, gear: Involute, *, phase: float, middle: float, low: float, high: float) -> Placed:
-    """Turn a geometry onto a solid: mean of all flanks on the measuring circle, tooth 1 nearest C0."""
-    rough = Placed(gear=gear, phase=phase, middle=middle, low=low, high=high)
-    left, right = pitch_deviations(solid, rough)
-    if np.isfinite(left).any() and np.isfinite(right).any():
-        shift = (np.nanmean(left) - np.nanmean(right)) / 2000 / gear.base_radius
-    else:
-        shift = 0.0
-    _, nearest = rough.tooth(np.array([-(phase + shift)]))
-    return Placed(gear=gear, phase=float(-nearest[0]), middle=middle, low=low, high=high)
-
-
-def pitch_deviations(solid: Solid, placed: Placed) -> tuple[Floats, Floats]:
-    """Return left and right flanks' places on the measuring circle (z,) [µm along the base tangent]."""
-    left, right = on_circles(
-        solid, placed, np.array([placed.middle]), np.array([placed.gear.measuring_diameter / 2])
-    )
-    return left[0, 0], right[0, 0]
-
-
-def on_circles(solid: Solid, placed: Placed, heights: Floats, radii: Floats) -> tuple[Floats, Floats]:
-    """Measure all flanks on circles, see `deviations`; heights and radii [mm] ascending."""
-    faces = faces_at_height(solid, float(heights[0])) if len(heights) == 1 else solid.faces
-    if len(radii) == 1:
-        faces = faces_at_radius(solid, float(radii[0]), faces=faces)
-    segments = plane_segments(solid, heights, faces=faces)
-    return deviations(circle_crossings(segments, radii), heights, radii, placed)
-
-
-def measure_flanks(solid: Solid, placed: Placed, *, tip_diameter: float) -> tuple[Flank, Flank]:
-    """Measure left and right flanks; `tip_diameter` [mm] is where the shortest tooth ends."""
-    gear = placed.gear
-    form, tip = (float(gear.roll_length(d)) for d in (gear.form_diameter, tip_diameter))
-    profile_range = (form, form + TIP_LIMIT * (tip - form))
-    roll = np.linspace(form, form + 0.99 * (tip - form), POINTS)
-    profiles = on_circles(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
-    margin = 0.5 * (placed.high - placed.low) / POINTS
-    heights = np.linspace(placed.low + margin, placed.high - margin, POINTS)
-    helices = on_circles(solid, placed, heights, np.array([gear.measuring_diameter / 2]))
-    pitches = pitch_deviations(solid, placed)
-    # along z a right-hand helix leans to +angle: material on left flanks, lack of it on right ones
-    hand = -1.0 if gear.helix < 0 else 1.0
-    left, right = (
-        _flank(
-            profile=[
-                _trace(k, roll, profiles[i][0, :, k], profile_range, 1.0) for k in traced_teeth(gear.teeth)
-            ],
-            helix=[
-                _trace(k, heights, helices[i][:, 0, k], placed.helix_range, hand * sense)
-                for k in traced_teeth(gear.teeth)
-            ],
-            # numbered clockwise: a flank further on is at a smaller angle
-            index=-sense * pitches[i] * gear.measuring_diameter / gear.base_diameter,
+    def traces(self, side: int, teeth: tuple[int, ...]) -> list[Trace | None]:
+        """Evaluate the traces of teeth counted from 0."""
+        return evaluate(
+            self.position,
+            self.deviation[side],
+            self.facet[side],
+            self.limits,
+            teeth=teeth,
+            sense=self.rise[side],
         )
-        for i, sense in enumerate((1.0, -1.0))
-    )
-    return left, right
+
+    def waves(self, side: int) -> tuple[Wave, ...]:
+        """Return the waviness of all teeth; none where the points of a trace share one rotation angle."""
+        turn = self.turn[side][self.inside]
+        if len(turn) < 2 or np.ptp(turn) == 0:
+            return ()
+        teeth = self.deviation.shape[2]
+        # the shortest wave that the filter lets pass, in turns of the gear
+        turns = np.ptp(turn) / (self.limits[1] - self.limits[0]) * cut_off(self.limits) / (2 * math.pi)
+        centres = -2 * math.pi * np.arange(teeth) / teeth
+        return waviness(turn, centres, self.deviation[side][self.inside], highest=1 / turns)
 
 
-def traced_teeth(teeth: int) -> tuple[int, ...]:
-    """Return the teeth to trace, equally spaced, counted from 0."""
+def usual_teeth(teeth: int) -> tuple[int, ...]:
+    """Return the teeth to trace where none are chosen, equally spaced, counted from 0."""
     count = min(TRACES, teeth)
     return tuple(round(i * teeth / count) for i in range(count))
 
 
-def _trace(
-    tooth: int, position: Floats, deviation: Floats, limits: tuple[float, float], sense: float
-) -> Trace | None:
-    """Evaluate one trace; None if it has holes. `sense` turns a rise of material into the slope's sign."""
-    finite = np.isfinite(deviation)
-    inside = finite & (position >= limits[0]) & (position <= limits[1])
-    wanted = np.count_nonzero((position >= limits[0]) & (position <= limits[1]))
-    if np.count_nonzero(inside) < max(0.98 * wanted, 2):
-        return None
-    x, y = position[inside], deviation[inside]
-    length = limits[1] - limits[0]
-    rise, level = np.polyfit((x - x.mean()) / length, y, 1)
-    rest = y - level - rise * (x - x.mean()) / length
-    return Trace(
-        tooth=tooth + 1,
-        position=position[finite],
-        deviation_um=deviation[finite] - y.mean(),
-        evaluation=limits,
-        slope_um=sense * float(rise),
-        form_um=float(np.ptp(rest)),
-        total_um=float(np.ptp(y)),
+def measure_flanks(solid: Solid, placed: Placed, usable: Usable, teeth: tuple[int, ...]) -> Measured:
+    """Measure left and right flanks; traces are evaluated on `teeth`, counted from 0."""
+    profile, helix = _profiles(solid, placed, usable), _helices(solid, placed)
+    pitch = pitch_readings(solid, placed)
+    outward = placed.gear.measuring_diameter / placed.gear.base_diameter
+    left, right = (
+        _flank(
+            profile=profile.traces(side, teeth),
+            helix=helix.traces(side, teeth),
+            # numbered clockwise: a flank further on is at a smaller angle
+            index=-sense * pitch.deviation[side, 0, 0] * outward,
+            facet=pitch.facet[side, 0, 0] * outward,
+            waves=(profile.waves(side), helix.waves(side)),
+        )
+        for side, sense in enumerate(SENSES)
+    )
+    return Measured(
+        left=left,
+        right=right,
+        profile_range=profile.limits,
+        largest_facet_um=max(profile.largest_facet_um, helix.largest_facet_um),
     )
 
 
-def _flank(*, profile: list[Trace | None], helix: list[Trace | None], index: Floats) -> Flank:
-    """Gather one side; index (z,) is each flank's displacement [µm] in the sense of numbering."""
+def _profiles(solid: Solid, placed: Placed, usable: Usable) -> _Scan:
+    """Read all profiles in the measuring plane."""
+    gear = placed.gear
+    start, end = usable.start, max(usable.end, usable.start + 1e-3 * gear.module)
+    roll = np.linspace(start, start + 0.99 * (end - start), POINTS)
+    read = read_flanks(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
+    return _Scan(
+        position=roll,
+        limits=(start, start + TIP_LIMIT * (end - start)),
+        deviation=read.deviation[:, 0],
+        facet=read.facet[:, 0],
+        # a point touches its mate where its tangent to the base circle stands
+        turn=np.array([-sense * roll / gear.base_radius for sense in SENSES]),
+        rise=(1.0, 1.0),
+    )
+
+
+def _helices(solid: Solid, placed: Placed) -> _Scan:
+    """Read all helices on the measuring circle."""
+    gear = placed.gear
+    margin = 0.5 * (placed.high - placed.low) / POINTS
+    heights = np.linspace(placed.low + margin, placed.high - margin, POINTS)
+    read = read_flanks(solid, placed, heights, np.array([gear.measuring_diameter / 2]))
+    # along z a right-hand helix leans to +angle: material on left flanks, lack of it on right ones
+    hand = -1.0 if gear.helix < 0 else 1.0
+    return _Scan(
+        position=heights,
+        limits=placed.helix_range,
+        deviation=read.deviation[:, :, 0],
+        facet=read.facet[:, :, 0],
+        turn=np.array([gear.twist * (heights - placed.middle)] * 2),
+        rise=(hand * SENSES[0], hand * SENSES[1]),
+    )
+
+
+def _flank(
+    *,
+    profile: list[Trace | None],
+    helix: list[Trace | None],
+    index: Floats,
+    facet: Floats,
+    waves: tuple[tuple[Wave, ...], tuple[Wave, ...]],
+) -> Flank:
+    """Gather one side.
+
+    `index` (z,) is each flank's displacement [µm] in the sense of numbering, `facet` what chords do to it,
+    `waves` the waviness of profile and helix.
+    """
     cumulative = index - index[0]
     pitch = np.roll(index, -1) - index
     whole = bool(np.isfinite(index).all())
-    profiles, helices = ([t for t in traces if t is not None] for traces in (profile, helix))
+    profiles, helices = _whole(profile), _whole(helix)
+    uncertainty = _facet_limits("profile", profiles) | _facet_limits("helix", helices)
+    if whole:
+        uncertainty["single_pitch_um"] = float(np.abs(np.roll(facet, -1) - facet).max())
+        uncertainty["cumulative_pitch_um"] = float(np.ptp(facet))
     return Flank(
-        profile=tuple(profiles),
-        helix=tuple(helices),
+        profile=tuple(t for t in profile if t is not None),
+        helix=tuple(t for t in helix if t is not None),
         pitch_um=pitch,
         cumulative_um=cumulative,
-        profile_slope_um=_mean_slope(profile),
-        profile_form_um=_largest([t.form_um for t in profiles], len(profile)),
-        profile_total_um=_largest([t.total_um for t in profiles], len(profile)),
-        helix_slope_um=_mean_slope(helix),
-        helix_form_um=_largest([t.form_um for t in helices], len(helix)),
-        helix_total_um=_largest([t.total_um for t in helices], len(helix)),
+        profile_slope_um=_mean([t.slope_um for t in profiles]),
+        profile_form_um=_largest([t.form_um for t in profiles]),
+        profile_total_um=_largest([t.total_um for t in profiles]),
+        helix_slope_um=_mean([t.slope_um for t in helices]),
+        helix_form_um=_largest([t.form_um for t in helices]),
+        helix_total_um=_largest([t.total_um for t in helices]),
         single_pitch_um=float(np.abs(pitch).max()) if whole else None,
         cumulative_pitch_um=float(np.ptp(cumulative)) if whole else None,
+        profile_crowning_um=_mean([t.crowning_um for t in profiles]),
+        helix_crowning_um=_mean([t.crowning_um for t in helices]),
+        filtered=_filtered("profile", profiles) | _filtered("helix", helices),
+        uncertainty=uncertainty,
+        profile_waviness=waves[0],
+        helix_waviness=waves[1],
     )
 
 
-def _mean_slope(traces: list[Trace | None]) -> float | None:
-    slopes = [t.slope_um for t in traces if t is not None]
-    if len(slopes) < len(traces):
+def _whole(traces: list[Trace | None]) -> list[Trace]:
+    """All traces, or none: figures over some of the teeth would not be what they are called."""
+    whole = [t for t in traces if t is not None]
+    return whole if len(whole) == len(traces) else []
+
+
+def _filtered(name: str, traces: list[Trace]) -> dict[str, float | None]:
+    found: list[Figures] = [t.filtered for t in traces if t.filtered is not None]
+    return {
+        f"{name}_slope_um": _mean([f.slope_um for f in found]),
+        f"{name}_form_um": _largest([f.form_um for f in found]),
+        f"{name}_total_um": _largest([f.total_um for f in found]),
+        f"{name}_crowning_um": _mean([f.crowning_um for f in found]),
+    }
+
+
+def _facet_limits(name: str, traces: list[Trace]) -> dict[str, float]:
+    """Return how much of each figure the mesh's chords alone can make: no more than they show themselves."""
+    limits: dict[str, float] = {}
+    for trace in traces:
+        for item in ("slope_um", "form_um", "total_um", "crowning_um"):
+            key = f"{name}_{item}"
+            limits[key] = max(limits.get(key, 0.0), abs(getattr(trace.facets, item)))
+    return limits
+
+
+def _mean(values: list[float]) -> float | None:
+    if not values:
         return None
-    mean = float(np.mean(slopes))
+    mean = float(np.mean(values))
     return 0.0 if abs(mean) < NO_SLOPE else mean
 
 
-def _largest(values: list[float], wanted: int) -> float | None:
-    return max(values) if len(values) == wanted else None
+def _largest(values: list[float]) -> float | None:
+    return max(values, default=None)

@@ -1,48 +1,78 @@
 """One inspection from mesh to verdict."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal
+
 from numpy.typing import ArrayLike
 
 from twin.errors import InputError, PartError
+from twin.inspection.axis import find_axis, straightened
 from twin.inspection.bodies import separate_bodies
-from twin.inspection.gear import find_gear, measure_gear
+from twin.inspection.fit import find_gear
+from twin.inspection.gear import measure_gear
+from twin.inspection.identity import name_of, other_unit, unlike
 from twin.inspection.involute import geometry
-from twin.inspection.judge import FLANK_LIMIT, judge_gear, judge_polygon, name_of, unlike
+from twin.inspection.judge_gear import FLANK_LIMIT, judge_gear
+from twin.inspection.judge_polygon import judge_polygon
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
-from twin.inspection.polygon import measure_polygon
 from twin.inspection.recognise import MOST_SIDES, Form, Outline, recognise
 from twin.inspection.result import GearResult, Inspection, Verdict
 from twin.inspection.solid import Solid, check_solid
 from twin.inspection.tolerances import across_flats_limits
 
+PRESSURE_DEG = 20.0
+"""normal pressure angle assumed where none is told (inspection.md, section 3)"""
 
-def inspect(vertices: ArrayLike, faces: ArrayLike, nominal: Nominal | None = None) -> Inspection:
+
+def inspect(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    nominal: Nominal | None = None,
+    *,
+    teeth: Sequence[int] | Literal["all"] | None = None,
+    pressure_deg: float = PRESSURE_DEG,
+    own_axis: bool = False,
+) -> Inspection:
     """Recognise and measure a part.
 
     Args:
         vertices: (n, 3) [mm] in the part frame: work axis = Z, +X = C0.
         faces: (m, 3) vertex indices of a closed 2-manifold.
         nominal: what the part should be; None: only what is found, not judged.
+        teeth: numbers of the teeth to trace, from 1 clockwise from C0, or all; None: four, equally
+            spaced.
+        pressure_deg: normal pressure angle of a gear that has no nominal [degrees].
+        own_axis: look for the part's own axis (bore, else tip circle) and measure about that.
 
     Raises:
         InputError: the mesh is no closed 2-manifold of finite numbers, or the nominal is impossible.
 
     """
-    _check_nominal(nominal)
+    _check_nominal(nominal, pressure_deg)
     solid = check_solid(vertices, faces)
     bodies = separate_bodies(solid)
     if bodies > 1:
         return _nothing(f"the mesh holds {bodies} separate bodies, a part is one", nominal)
     outline = recognise(solid)
+    axis = None
+    if own_axis:
+        try:
+            axis = find_axis(solid, outline)
+        except PartError as fault:
+            return _nothing(fault.text, nominal)
+        solid = straightened(solid, axis)
+        outline = recognise(solid)
     if outline.form is Form.GEAR and not isinstance(nominal, PolygonNominal):
-        result = _inspect_gear(solid, outline, nominal)
+        result = _inspect_gear(solid, outline, nominal, teeth, pressure_deg)
     elif outline.form is Form.POLYGON and not isinstance(nominal, GearNominal):
         result = _inspect_polygon(solid, outline, nominal)
     else:
         result = _nothing(_unexpected(outline, nominal), nominal)
-    return result
+    return replace(result, axis=axis, findings=(*result.findings, *solid.mended))
 
 
-def _check_nominal(nominal: Nominal | None) -> None:
+def _check_nominal(nominal: Nominal | None, pressure_deg: float) -> None:
     """An impossible nominal is refused before anything is measured."""
     if isinstance(nominal, GearNominal):
         geometry(nominal)
@@ -53,12 +83,27 @@ def _check_nominal(nominal: Nominal | None) -> None:
                 f"nominal polygon: number_of_sides is {nominal.number_of_sides}",
                 remedy=f"valid is 2 to {MOST_SIDES}",
             )
+    else:
+        geometry(
+            GearNominal(number_of_teeth=20, normal_module_mm=1.0, normal_pressure_angle_deg=pressure_deg)
+        )
 
 
-def _inspect_gear(solid: Solid, outline: Outline, nominal: GearNominal | None) -> Inspection:
-    pressure = nominal.normal_pressure_angle_deg if nominal is not None else 20.0
+def _inspect_gear(
+    solid: Solid,
+    outline: Outline,
+    nominal: GearNominal | None,
+    teeth: Sequence[int] | Literal["all"] | None,
+    pressure_deg: float,
+) -> Inspection:
+    if nominal is not None:
+        pressure_deg = nominal.normal_pressure_angle_deg
+        if outline.count == nominal.number_of_teeth:
+            unit = other_unit(2 * outline.tip_radius, geometry(nominal).tip_diameter, "the tip diameter")
+            if unit:
+                return _nothing(unit, nominal)
     try:
-        found = find_gear(solid, outline, pressure_deg=pressure)
+        found = find_gear(solid, outline, pressure_deg=pressure_deg)
     except PartError as fault:
         return _nothing(fault.text, nominal)
     if found.straying > FLANK_LIMIT * found.module:
@@ -70,17 +115,13 @@ def _inspect_gear(solid: Solid, outline: Outline, nominal: GearNominal | None) -
     difference = unlike(found, nominal) if nominal is not None else ""
     if difference:
         return _nothing(f"{difference} (found: {found})", nominal)
-    gear, unmeasured = measure_gear(solid, outline, found, nominal)
+    gear, unmeasured = measure_gear(solid, outline, found, nominal, teeth)
     ruined = _ruined(gear)
     if ruined:
         return _nothing(ruined, nominal)
     gear, verdict, findings = judge_gear(gear, nominal, whole=outline.whole, unmeasured=unmeasured)
     return Inspection(
-        gear=gear,
-        nominal=nominal,
-        verdict=verdict,
-        findings=(*findings, *_mended(solid)),
-        unmeasured=unmeasured,
+        gear=gear, nominal=nominal, verdict=verdict, findings=tuple(findings), unmeasured=unmeasured
     )
 
 
@@ -96,21 +137,24 @@ def _ruined(gear: GearResult) -> str:
 
 
 def _inspect_polygon(solid: Solid, outline: Outline, nominal: PolygonNominal | None) -> Inspection:
-    if nominal is not None and outline.count != nominal.number_of_sides:
-        return _nothing(
-            f"a polygon with {outline.count} sides was found, not {nominal.number_of_sides}", nominal
-        )
+    # with scipy's convex hull: half a second that a gear need not wait for
+    from twin.inspection.polygon import measure_polygon  # noqa: PLC0415
+
+    if nominal is not None:
+        if outline.count != nominal.number_of_sides:
+            return _nothing(
+                f"a polygon with {outline.count} sides was found, not {nominal.number_of_sides}", nominal
+            )
+        unit = other_unit(2 * outline.root_radius, nominal.across_flats_mm, "the width across flats")
+        if unit:
+            return _nothing(unit, nominal)
     try:
         polygon, unmeasured = measure_polygon(solid, outline, nominal)
     except PartError as fault:
         return _nothing(fault.text, nominal)
     verdict, findings = judge_polygon(polygon, nominal, whole=outline.whole)
     return Inspection(
-        polygon=polygon,
-        nominal=nominal,
-        verdict=verdict,
-        findings=(*findings, *_mended(solid)),
-        unmeasured=unmeasured,
+        polygon=polygon, nominal=nominal, verdict=verdict, findings=tuple(findings), unmeasured=unmeasured
     )
 
 
@@ -135,7 +179,3 @@ def _nothing(reason: str, nominal: Nominal | None) -> Inspection:
         return Inspection(verdict=Verdict.NOT_GRADED, reason=reason, findings=(reason,))
     full = f"not {name_of(nominal)}: {reason}"
     return Inspection(nominal=nominal, verdict=Verdict.OUT, reason=full, findings=(full,))
-
-
-def _mended(solid: Solid) -> tuple[str, ...]:
-    return ("the mesh came inside out and was turned",) if solid.turned else ()

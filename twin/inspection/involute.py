@@ -36,6 +36,8 @@ class Involute:
     """d_f"""
     form_diameter: float
     """d_Ff, where the usable flank begins; above the undercut where there is one"""
+    undercut: bool
+    """the tool named cuts the involute's foot away"""
     measuring_diameter: float
     """d_M = d + 2 x m_n, where helix and pitch are measured"""
     twist: float
@@ -135,6 +137,7 @@ def geometry(nominal: GearNominal) -> Involute:
     d_a = nominal.tip_diameter_mm if nominal.tip_diameter_mm is not None else d + 2 * m * (1 + x)
     d_f = d - 2 * m * (nominal.dedendum_factor - x)
     d_b = d * math.cos(alpha_t)
+    form_diameter, undercut = _form_diameter(nominal, alpha_t, d)
     if d_f <= 0 or d_a <= max(d_f, d_b):
         raise InputError(
             f"nominal gear: tip diameter {d_a:.3f} mm and root diameter {d_f:.3f} mm leave no tooth flank",
@@ -151,7 +154,8 @@ def geometry(nominal: GearNominal) -> Involute:
         base_diameter=d_b,
         tip_diameter=d_a,
         root_diameter=d_f,
-        form_diameter=_form_diameter(nominal, alpha_t, d),
+        form_diameter=form_diameter,
+        undercut=undercut,
         measuring_diameter=d + 2 * x * m,
         twist=2 * math.sin(beta) / (z * m),
     )
@@ -181,8 +185,8 @@ def _check(nominal: GearNominal) -> None:
             raise InputError(f"nominal gear: {name} is {value}", remedy=f"valid is {low} to {high}")
 
 
-def _form_diameter(nominal: GearNominal, alpha_t: float, d: float) -> float:
-    """d_Ff of a gear cut by a rack with a rounded tip (geometry.md, section 1)."""
+def _form_diameter(nominal: GearNominal, alpha_t: float, d: float) -> tuple[float, bool]:
+    """d_Ff of a gear cut by a rack with a rounded tip, and whether it is undercut (geometry.md, 1)."""
     m, x, z = nominal.normal_module_mm, nominal.profile_shift, nominal.number_of_teeth
     alpha, beta = math.radians(nominal.normal_pressure_angle_deg), math.radians(nominal.helix_angle_deg)
     rho = nominal.tip_radius_factor * m
@@ -190,20 +194,30 @@ def _form_diameter(nominal: GearNominal, alpha_t: float, d: float) -> float:
     roll = d * math.sin(alpha_t) - 2 * (straight - x * m) / math.sin(alpha_t)
     d_b = d * math.cos(alpha_t)
     if roll >= 0:
-        return math.hypot(roll, d_b)
+        return math.hypot(roll, d_b), False
     # Undercut: the path of the rounded rack corner, turned into the gear frame, cuts the involute off.
-    phi = np.linspace(alpha, math.pi / 2, 4000)  # direction of the contact normal, in the rack's normal plane
     centre = (
         math.pi * m / 4
         - nominal.dedendum_factor * m * math.tan(alpha)
         - rho * (1 - math.sin(alpha)) / math.cos(alpha)
     )
-    across = (centre + rho * np.cos(phi)) / math.cos(beta)
-    depth = nominal.dedendum_factor * m - x * m - rho * (1 - np.sin(phi))
-    travel = depth * np.cos(phi) * math.cos(beta) / np.sin(phi) - across
-    radius = np.hypot(across + travel, d / 2 - depth)
-    gap = np.arctan2(across + travel, d / 2 - depth) - travel / (d / 2)
     at_reference = (math.pi / 2 + 2 * x * math.tan(alpha)) / z
-    half_tooth = at_reference + involute(alpha_t) - involute(np.arccos(np.minimum(d_b / 2 / radius, 1.0)))
-    undercut = (radius > d_b / 2) & (gap > math.pi / z - half_tooth)
-    return 2 * float(radius[undercut].max(initial=d_b / 2))
+    highest, low, high = d_b / 2, alpha, math.pi / 2
+    for points in (4000, 200, 200, 200):
+        # direction of the contact normal, in the rack's normal plane
+        phi = np.linspace(low, high, points)
+        across = (centre + rho * np.cos(phi)) / math.cos(beta)
+        depth = nominal.dedendum_factor * m - x * m - rho * (1 - np.sin(phi))
+        travel = depth * np.cos(phi) * math.cos(beta) / np.sin(phi) - across
+        radius = np.hypot(across + travel, d / 2 - depth)
+        gap = np.arctan2(across + travel, d / 2 - depth) - travel / (d / 2)
+        outside = np.arccos(np.minimum(d_b / 2 / radius, 1.0))
+        half_tooth = at_reference + involute(alpha_t) - involute(outside)
+        undercut = (radius > d_b / 2) & (gap > math.pi / z - half_tooth)
+        if not undercut.any():
+            break
+        # the corner of undercut and involute lies between this point and one of its neighbours
+        top = int(np.argmax(np.where(undercut, radius, 0.0)))
+        highest = float(radius[top])
+        low, high = phi[max(top - 1, 0)], phi[min(top + 1, points - 1)]
+    return 2 * highest, True

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+TOLERANCE = "h13"
+"""of widths across flats where none is named"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearNominal:
@@ -36,7 +39,7 @@ class PolygonNominal:
 
     number_of_sides: int
     across_flats_mm: float
-    tolerance: str = "h13"
+    tolerance: str = TOLERANCE
     """ISO 4759-1 grade A on the width across flats"""
 
 

@@ -15,12 +15,14 @@ from numpy.polynomial import Legendre
 from scipy.spatial import ConvexHull
 
 from twin.errors import PartError
+from twin.inspection.facets import chord_depth_um
 from twin.inspection.nominal import PolygonNominal
 from twin.inspection.recognise import Complexes, Outline
 from twin.inspection.result import Face, PolygonResult
 from twin.inspection.sections import Segments, outer_outlines, plane_segments_in_parts
 from twin.inspection.sections import outline as chained_outline
 from twin.inspection.solid import Floats, Ints, Solid
+from twin.inspection.tolerances import flatness_limits_um
 
 PLANES = 21
 """sections read over the length"""
@@ -78,8 +80,8 @@ def measure_polygon(
     unmeasured = {}
     least = largest = None
     if sides % 2 == 0:
-        widths = [_caliper(p, d[: sides // 2]) for p, d in zip(sections, directions, strict=True)]
-        least, largest = float(np.min(widths)), float(np.max(widths))
+        readings = [_caliper(p, d[: sides // 2]) for p, d in zip(sections, directions, strict=True)]
+        least, largest = float(np.min(readings)), float(np.max(readings))
     else:
         unmeasured["across_flats_caliper_mm"] = f"with {sides} sides no face stands opposite another"
     found = np.array([f.direction_deg for f in faces])
@@ -93,6 +95,8 @@ def measure_polygon(
             "no regular polygon"
         )
     twist = _unless_noise(math.degrees(outline.twist), NO_TWIST)
+    flatness = max(f.flatness_um for f in faces)
+    limits = flatness_limits_um(max(outline.high - outline.low, *(f.width_mm for f in faces)))
     result = PolygonResult(
         number_of_sides=sides,
         across_flats_mm=2 * float(mid.mean()),
@@ -102,7 +106,7 @@ def measure_polygon(
         across_corners_mm=float(across_corners.mean()),
         across_corners_least_mm=float(across_corners.min()),
         bow_um=bow,
-        flatness_um=max(f.flatness_um for f in faces),
+        flatness_um=flatness,
         twist_deg_per_mm=twist,
         hand="none" if abs(twist) < UNTWISTED else "right" if twist > 0 else "left",
         concentricity_um=2000 * _off_axis(np.radians(found), mid),
@@ -111,8 +115,13 @@ def measure_polygon(
         range_mm=(outline.low, outline.high),
         section=sections[PLANES // 2],
         reference=nominal,
+        flatness_limits_um=limits,
+        flatness_class=next((a for a, limit in limits.items() if flatness <= limit), "worse"),
     )
-    return result, unmeasured
+    depth = chord_depth_um(solid, result)
+    widths = ("across_flats_mm", "across_flats_planes_mm", "across_flats_caliper_mm")
+    uncertainty = dict.fromkeys(("bow_um", "flatness_um"), depth) | dict.fromkeys(widths, 2 * depth / 1000)
+    return replace(result, uncertainty=uncertainty), unmeasured
 
 
 def _short_chords(outer: Segments, sides: int) -> tuple[Complexes, Complexes, Ints]:

@@ -16,11 +16,11 @@ from twin.inspection.sections import (
     Crossings,
     Segments,
     circle_crossings,
-    faces_at_radius,
     outer_outlines,
     plane_segments,
     plane_segments_in_parts,
     radial_limits,
+    turns_about_axis,
 )
 from twin.inspection.solid import Floats, Ints, Solid
 
@@ -28,8 +28,8 @@ Complexes = NDArray[np.complex128]
 
 PLANES = 48
 """sections taken over the length of the part"""
-FEWEST_PLANES = 16
-MOST_CROSSINGS = 4e6
+FEWEST_PLANES = 12
+MOST_CROSSINGS = 1e6
 """fewer sections are taken of parts whose faces run all along them, so that this many are crossed"""
 FEWEST = 5
 """sections in a row that must be alike"""
@@ -166,9 +166,7 @@ def _survey(solid: Solid, heights: Floats) -> tuple[Floats, Floats, Ints]:
 def _counts(sections: Segments, middles: Floats) -> Ints:
     """Count regular teeth in every plane on its own circle; 0 where steps are uneven or the axis outside."""
     crossings = circle_crossings(sections.scaled(1 / middles), np.ones(1))
-    start, end = sections.start, sections.end
-    turn = np.angle((end[:, 0] + 1j * end[:, 1]) * (start[:, 0] - 1j * start[:, 1]))
-    around = np.bincount(sections.plane, weights=turn, minlength=len(middles)) > math.pi
+    around = turns_about_axis(sections) > 0.5
     counts = np.zeros(len(middles), dtype=np.int64)
     for plane in np.flatnonzero(around):
         here = crossings.plane == plane  # sorted by angle
@@ -255,7 +253,7 @@ def _twist(solid: Solid, count: int, low: float, high: float, radius: float) -> 
     # below 45° a quarter pitch of height turns the teeth by less than half a pitch: no ambiguity
     planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 33, 2000))
     heights = _midpoints(low, high, planes)
-    segments = plane_segments(solid, heights, faces=faces_at_radius(solid, radius))
+    segments = plane_segments(solid, heights, radius=radius)
     crossings = circle_crossings(segments, np.array([radius]))
     left, right = phase_sums(crossings, count, crossings.plane, planes)
     # half way from each right flank on to the left flank of the same tooth

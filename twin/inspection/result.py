@@ -1,5 +1,7 @@
 """What an inspection found. Lengths in mm, deviations in µm, angles in degrees; None = not measurable."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -17,6 +19,30 @@ class Verdict(Enum):
     IN = "in"
     OUT = "out"
     NOT_GRADED = "not_graded"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Figures:
+    """One curve evaluated about its least-squares line and parabola."""
+
+    slope_um: float
+    """rise of the line over the evaluated range"""
+    form_um: float
+    """band along the line"""
+    total_um: float
+    """range of the deviation"""
+    crowning_um: float
+    """height of the parabola's middle over its ends, + = barrelled"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wave:
+    """One order of the waviness."""
+
+    order: int
+    """waves per turn of the gear"""
+    amplitude_um: float
+    """half of peak to valley"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,11 +64,20 @@ class Trace:
     """band along the mean line"""
     total_um: float
     """range of the deviation"""
+    crowning_um: float = math.nan
+    """C_alpha or C_beta by a second-order fit, + = barrelled"""
+    filtered: Figures | None = None
+    """the same behind the Gaussian low-pass filter"""
+    facets: Figures | None = None
+    """the same of what the mesh's chords alone put into the trace"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flank:
-    """All left or all right flanks of a gear. Slopes are signed means, the others the largest."""
+    """All left or all right flanks of a gear.
+
+    Slopes and crownings are signed means over the traces, the others the largest.
+    """
 
     profile: tuple[Trace, ...]
     helix: tuple[Trace, ...]
@@ -58,6 +93,18 @@ class Flank:
     helix_total_um: float | None
     single_pitch_um: float | None
     cumulative_pitch_um: float | None
+    profile_crowning_um: float | None = None
+    """C_alpha"""
+    helix_crowning_um: float | None = None
+    """C_beta"""
+    filtered: Mapping[str, float | None] = field(default_factory=dict)
+    """field of a profile or helix figure -> its value behind the Gaussian filter"""
+    uncertainty: Mapping[str, float] = field(default_factory=dict)
+    """field -> how much of it the mesh's own facets can make [µm]"""
+    profile_waviness: tuple[Wave, ...] = ()
+    """largest orders, largest first"""
+    helix_waviness: tuple[Wave, ...] = ()
+    """none on a spur gear: all points of a trace share one rotation angle"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,8 +146,28 @@ class GearResult:
     """angle of tooth 1's centre in that plane"""
     accuracy_class: dict[str, int | None] = field(default_factory=dict)
     """class reached per item and "overall"; None = worse than 11 or outside the standard's range"""
+    accuracy_class_filtered: dict[str, int | None] = field(default_factory=dict)
+    """the same by the filtered values"""
     tolerances_um: dict[str, float] = field(default_factory=dict)
     """per item, of the nominal's class"""
+    tooth_thickness_mm: float | None = None
+    """s_n, normal to the teeth along the reference circle, mean of all"""
+    chordal_thickness_mm: float | None = None
+    """its chord, as a tooth caliper reads it"""
+    chordal_height_mm: float | None = None
+    """of the tip over that chord, where the caliper is set"""
+    form_diameter_mm: float | None = None
+    """where the usable flank begins"""
+    tip_form_diameter_mm: float | None = None
+    """where it ends: at a tip chamfer, or at the tip"""
+    undercut: bool = False
+    """below the usable flank material is lacking"""
+    chamfered: bool = False
+    """the flanks end below the tips"""
+    helix_range_mm: tuple[float, float] | None = None
+    """z between which helices are evaluated"""
+    uncertainty: Mapping[str, float] = field(default_factory=dict)
+    """field -> how much of it the mesh's own facets can make, in the unit of the field"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,6 +225,43 @@ class PolygonResult:
     section: Floats
     """(m, 2) outline at mid-length [mm]"""
     reference: PolygonNominal | None
+    flatness_class: str | None = None
+    """H, K or L of ISO 2768-2 that the flatness holds; "worse" than L or beyond its table"""
+    flatness_limits_um: Mapping[str, float] = field(default_factory=dict)
+    """H, K, L of ISO 2768-2 for the longest side of the faces"""
+    uncertainty: Mapping[str, float] = field(default_factory=dict)
+    """field -> how much of it the mesh's own facets can make, in the unit of the field"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Axis:
+    """The part's own axis, as found and taken out before measuring."""
+
+    datum: str
+    """"bore" | "tip circle" | "corners" """
+    diameter_mm: float
+    """of the cylinder through it"""
+    at_z_mm: float
+    """height at which `x_mm` and `y_mm` hold: the middle of the datum"""
+    x_mm: float
+    y_mm: float
+    tilt_x_deg: float
+    """lean of the axis towards +X as z rises"""
+    tilt_y_deg: float
+    """towards +Y"""
+    roundness_um: float
+    """range of the datum's points about the cylinder"""
+
+    @property
+    def offset_mm(self) -> float:
+        """Distance from the mesh's Z axis at `at_z_mm`."""
+        return math.hypot(self.x_mm, self.y_mm)
+
+    @property
+    def tilt_deg(self) -> float:
+        """Angle with the mesh's Z axis."""
+        along = (math.tan(math.radians(lean)) for lean in (self.tilt_x_deg, self.tilt_y_deg))
+        return math.degrees(math.atan(math.hypot(*along)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,6 +271,8 @@ class Inspection:
     gear: GearResult | None = None
     polygon: PolygonResult | None = None
     nominal: Nominal | None = None
+    axis: Axis | None = None
+    """where one was looked for"""
     verdict: Verdict = Verdict.NOT_GRADED
     findings: tuple[str, ...] = ()
     """sentences: why the verdict is what it is, most important first"""

@@ -9,10 +9,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from twin.inspection.solid import Floats, Ints, Solid, corner_limits
+from twin.inspection.components import components
+from twin.inspection.solid import Floats, Ints, Solid
 
 PART = 1_000_000
 """about so many segments are handled at a time"""
@@ -71,19 +70,26 @@ class Crossings:
     """(n,) [rad], -pi to pi"""
     left: np.ndarray
     """(n,) bool: a left flank (material towards -angle); else a right flank"""
+    segment: Ints
+    """(n,) which segment is crossed"""
+    along: Floats
+    """(n,) how far along it, 0 at its start to 1 at its end"""
 
 
-def plane_segments(solid: Solid, heights: Floats, *, faces: Ints | None = None) -> Segments:
-    """Cut a solid by the planes z = heights (k,), ascending; `faces` (m, 3) restricts it to some faces."""
+def plane_segments(solid: Solid, heights: Floats, *, radius: float | None = None) -> Segments:
+    """Cut a solid by the planes z = heights (k,), ascending.
+
+    With a `radius` [mm] only the faces that can meet that cylinder are cut.
+    """
     z = solid.vertices[:, 2]
-    if faces is None:
-        faces, limits = solid.faces, (solid.face_low, solid.face_high)
-    else:
-        limits = corner_limits(z, faces)
-    first, count = _spans(*limits, heights)
+    met = (solid.face_low < heights[-1]) & (solid.face_high >= heights[0])
+    if radius is not None:
+        met &= (solid.face_near <= radius**2) & (solid.face_far >= radius**2)
+    chosen = np.flatnonzero(met)
+    first, count = _spans(solid.face_low[chosen], solid.face_high[chosen], heights)
     face, plane = _expand(first, count)
     h = heights[plane]
-    a, b, c = (faces[face, i] for i in range(3))
+    a, b, c = solid.faces.take(chosen[face], axis=0).T
     above_a, above_b, above_c = (z[corner] >= h for corner in (a, b, c))
     # one corner lies alone on its side of the plane; walk round the face from it
     lone_a, lone_b = above_b == above_c, above_a == above_c
@@ -140,40 +146,29 @@ def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
     angle = np.arctan2(point[:, 1], point[:, 0])
     order = np.lexsort((angle, circle, segments.plane[segment]))
     return Crossings(
-        plane=segments.plane[segment][order], circle=circle[order], angle=angle[order], left=left[order]
+        plane=segments.plane[segment][order],
+        circle=circle[order],
+        angle=angle[order],
+        left=left[order],
+        segment=segment[order],
+        along=t[order],
     )
-
-
-def faces_at_height(solid: Solid, height: float) -> Ints:
-    """Return the faces (m, 3) that meet the plane z = height [mm]."""
-    return solid.faces[(solid.face_low < height) & (solid.face_high >= height)]
-
-
-def faces_at_radius(solid: Solid, radius: float, *, faces: Ints | None = None) -> Ints:
-    """Return the faces (m, 3), of `faces` or of all, that can meet the cylinder of that radius [mm]."""
-    faces = solid.faces if faces is None else faces
-    x, y = solid.vertices[:, 0], solid.vertices[:, 1]
-    low, high = corner_limits(x * x + y * y, faces)
-    a, b, c = (faces[:, i] for i in range(3))
-    longest = np.maximum.reduce(
-        [(x[p] - x[q]) ** 2 + (y[p] - y[q]) ** 2 for p, q in ((a, b), (b, c), (c, a))]
-    )
-    # a chord of length l between points outside R comes no nearer than sqrt(R^2 - l^2/4)
-    return faces[(low - longest / 4 <= radius**2) & (high >= radius**2)]
 
 
 def outer_outlines(segments: Segments) -> Segments:
     """Keep, in every plane, the closed outline of largest area: bores and loose pieces go."""
     if len(segments.plane) == 0:
         return segments
+    swept = _cross(segments.start, segments.end)
+    if (swept >= 0).all() and (turns_about_axis(segments) < 1.5).all():
+        return segments  # what only goes forward and once round is one outline
     n, planes = len(segments.plane), len(segments.heights)
     # every node is the start of one segment and the end of another
     by_start = np.argsort(segments.start_node * planes + segments.plane)
     by_end = np.argsort(segments.end_node * planes + segments.plane)
-    graph = coo_array((np.ones(n, dtype=np.int8), (by_end, by_start)), shape=(n, n))
-    loops, loop = connected_components(graph, directed=False)
-    area = np.bincount(loop, weights=_cross(segments.start, segments.end), minlength=loops)
-    plane_of = np.zeros(loops, dtype=np.int64)
+    loop = components(n, by_end, by_start)
+    area = np.bincount(loop, weights=swept)
+    plane_of = np.zeros(len(area), dtype=np.int64)
     plane_of[loop] = segments.plane
     largest = np.full(len(segments.heights), -np.inf)
     np.maximum.at(largest, plane_of, area)
@@ -191,6 +186,14 @@ def outline(segments: Segments, plane: int) -> Floats:
         rows.append(row[node])
         node = following[node]
     return chosen.start[rows]
+
+
+def turns_about_axis(segments: Segments) -> Floats:
+    """Return how often the outlines of each plane go round the axis, (k,); clockwise is negative."""
+    start, end = segments.start, segments.end
+    swept = _cross(start, end)
+    angle = np.arctan2(swept, np.einsum("ij,ij->i", start, end))
+    return np.bincount(segments.plane, weights=angle, minlength=len(segments.heights)) / (2 * np.pi)
 
 
 def radial_limits(segments: Segments) -> tuple[Floats, Floats]:
@@ -224,9 +227,12 @@ def _expand(first: Ints, count: Ints) -> tuple[Ints, Ints]:
 def _cross_edge(vertices: Floats, one: Ints, other: Ints, z: Floats) -> tuple[Floats, Ints]:
     """Cross mesh edges with z; the same from both of an edge's faces, to the last bit."""
     low, high = np.minimum(one, other), np.maximum(one, other)
-    a, b = vertices[low], vertices[high]
-    t = (z - a[:, 2]) / (b[:, 2] - a[:, 2])
-    return a[:, :2] + t[:, None] * (b[:, :2] - a[:, :2]), low * len(vertices) + high
+    # take, and in place: half the work of a section is here
+    a, along = vertices.take(low, axis=0), vertices.take(high, axis=0)
+    along -= a
+    along *= ((z - a[:, 2]) / along[:, 2])[:, None]
+    along += a
+    return along[:, :2], low * len(vertices) + high
 
 
 def _cross(a: Floats, b: Floats) -> Floats:

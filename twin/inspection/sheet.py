@@ -5,15 +5,27 @@ from collections.abc import Mapping
 from typing import Any
 
 from twin.inspection.nominal import GearNominal, Nominal
-from twin.inspection.result import Flank, GearResult, Inspection, PolygonResult
+from twin.inspection.result import (
+    Axis,
+    Figures,
+    Flank,
+    GearResult,
+    Inspection,
+    PolygonResult,
+    Trace,
+    Wave,
+)
+from twin.inspection.trace import cut_off
 
 FLANK_KEYS = (
     "profile_slope_um",
     "profile_form_um",
     "profile_total_um",
+    "profile_crowning_um",
     "helix_slope_um",
     "helix_form_um",
     "helix_total_um",
+    "helix_crowning_um",
     "single_pitch_um",
     "cumulative_pitch_um",
 )
@@ -28,6 +40,8 @@ def to_json(inspection: Inspection) -> dict[str, Any]:
         values |= _gear(inspection.gear)
     if inspection.polygon is not None:
         values |= _polygon(inspection.polygon)
+    if inspection.axis is not None:
+        values["axis"] = _axis(inspection.axis)
     values["nominal"] = _nominal(inspection.nominal)
     values["verdict"] = inspection.verdict.value
     values["findings"] = list(inspection.findings)
@@ -52,10 +66,20 @@ def _gear(gear: GearResult) -> dict[str, Any]:
         "runout_um": gear.runout_um,
         "flank_offset_um": gear.flank_offset_um,
         "flanks": {"left": _flank(gear.left), "right": _flank(gear.right)},
+        "tooth_thickness_mm": gear.tooth_thickness_mm,
+        "chordal_thickness_mm": gear.chordal_thickness_mm,
+        "chordal_height_mm": gear.chordal_height_mm,
+        "uncertainty": gear.uncertainty,
         "accuracy_class": gear.accuracy_class,
+        "accuracy_class_filtered": gear.accuracy_class_filtered,
         "tolerances_um": gear.tolerances_um,
         "reference": _nominal(gear.reference),
+        "form_diameter_mm": gear.form_diameter_mm,
+        "tip_form_diameter_mm": gear.tip_form_diameter_mm,
+        "undercut": gear.undercut,
+        "chamfered": gear.chamfered,
         "profile_range_mm": gear.profile_range_mm,
+        "helix_range_mm": gear.helix_range_mm,
         "teeth_range_mm": gear.teeth_range_mm,
         "measuring_plane_mm": gear.measuring_plane_mm,
     }
@@ -63,9 +87,36 @@ def _gear(gear: GearResult) -> dict[str, Any]:
 
 def _flank(flank: Flank) -> dict[str, Any]:
     return {key: getattr(flank, key) for key in FLANK_KEYS} | {
+        "filtered": dict(flank.filtered),
+        "uncertainty": dict(flank.uncertainty),
+        "profile_waviness": [_wave(wave) for wave in flank.profile_waviness],
+        "helix_waviness": [_wave(wave) for wave in flank.helix_waviness],
         "pitch_um": flank.pitch_um.tolist(),
         "cumulative_um": flank.cumulative_um.tolist(),
+        "profile": [_trace(trace) for trace in flank.profile],
+        "helix": [_trace(trace) for trace in flank.helix],
     }
+
+
+def _wave(wave: Wave) -> dict[str, Any]:
+    return {"order": wave.order, "amplitude_um": wave.amplitude_um}
+
+
+def _trace(trace: Trace) -> dict[str, Any]:
+    """The figures of one tooth; the points themselves are for `--csv`."""
+    return {
+        "tooth": trace.tooth,
+        "points": len(trace.position),
+        "evaluation": trace.evaluation,
+        "cut_off_mm": cut_off(trace.evaluation),
+        **_figures(trace),
+        "filtered": _figures(trace.filtered) if trace.filtered else None,
+        "uncertainty": _figures(trace.facets) if trace.facets else None,
+    }
+
+
+def _figures(figures: Trace | Figures) -> dict[str, Any]:
+    return {key: getattr(figures, key) for key in ("slope_um", "form_um", "total_um", "crowning_um")}
 
 
 def _polygon(polygon: PolygonResult) -> dict[str, Any]:
@@ -96,7 +147,15 @@ def _polygon(polygon: PolygonResult) -> dict[str, Any]:
             for face in polygon.faces
         ],
         "range_mm": polygon.range_mm,
+        "flatness_class": polygon.flatness_class,
+        "flatness_limits_um": polygon.flatness_limits_um,
+        "uncertainty": polygon.uncertainty,
     }
+
+
+def _axis(axis: Axis) -> dict[str, Any]:
+    names = ("offset_mm", "tilt_deg", *axis.__dataclass_fields__)
+    return {name: getattr(axis, name) for name in names}
 
 
 def _nominal(nominal: Nominal | None) -> dict[str, Any] | None:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from twin.inspection.flanks import Placed
+from twin.inspection.reading import Placed
 from twin.inspection.solid import Floats, Solid
 
 
@@ -26,8 +26,12 @@ def tip_and_root_radii(solid: Solid, placed: Placed, *, root_radius: float) -> t
     return tips, gaps
 
 
-def measure_span(solid: Solid, placed: Placed, k: int, *, tip_radius: float) -> tuple[float | None, str]:
+def measure_span(
+    solid: Solid, placed: Placed, k: int, *, form_radius: float, tip_radius: float
+) -> tuple[float | None, str]:
     """Return the mean span [mm] over every group of k teeth, or None and the reason.
+
+    `form_radius` and `tip_radius` [mm] are where the usable flanks begin and end.
 
     Two parallel planes, inclined by the base helix angle and square to the middle of the group, are closed
     on the outer flanks until they touch.
@@ -40,8 +44,7 @@ def measure_span(solid: Solid, placed: Placed, k: int, *, tip_radius: float) -> 
         return None, f"the span over {k} teeth of this helix needs a face wider than {needed:.2f} mm"
     x, y, z = solid.vertices.T
     radius = np.hypot(x, y)
-    low = gear.form_diameter / 2
-    chosen = (radius >= low) & (radius <= tip_radius) & (z >= placed.low) & (z <= placed.high)
+    chosen = (radius >= form_radius) & (radius <= tip_radius) & (z >= placed.low) & (z <= placed.high)
     points, radius = solid.vertices[chosen], radius[chosen]
     tooth, offset = placed.tooth(placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2]))
     # sorted by flank: the right flank of a tooth, then its left one

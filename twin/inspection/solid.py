@@ -11,6 +11,14 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+LARGEST = 1e6
+"""a coordinate beyond this [mm] is no workpiece's"""
+
+
+class MeshError(InputError):
+    """A mesh that is no solid to measure."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solid:
     """A closed 2-manifold with outward faces, in the part frame (work axis = Z, front face at z = 0)."""
@@ -23,95 +31,156 @@ class Solid:
     """(m,) least z of each face"""
     face_high: Floats
     """(m,) largest z of each face"""
-    turned: bool
-    """the mesh came inside out and was turned"""
+    face_near: Floats
+    """(m,) no point of the face is nearer to the z axis, squared [mm²]"""
+    face_far: Floats
+    """(m,) no point of the face is farther from it, squared [mm²]"""
+    neighbours: tuple[Ints, Ints]
+    """(3 m / 2,) each: the faces on both sides of every edge"""
+    mended: tuple[str, ...] = ()
+    """what had to be mended, in sentences"""
 
 
 def check_solid(vertices: ArrayLike, faces: ArrayLike) -> Solid:
-    """Take a mesh for measuring.
+    """Take a mesh for measuring. Doubled and degenerate faces and a mesh inside out are mended.
 
     Args:
         vertices: (n, 3) [mm].
         faces: (m, 3) vertex indices.
 
     Raises:
-        InputError: wrong shape or type, empty, NaN or infinite coordinates, indices out of range, or not a
-            closed, consistently oriented 2-manifold.
+        MeshError: wrong shape or type, empty, NaN, infinite or huge coordinates, indices out of range, or
+            not a closed, consistently oriented 2-manifold.
 
     """
     points = _array(vertices, "vertices", np.float64)
     triangles = _array(faces, "faces", np.int64)
-    bad = ~np.isfinite(points).all(axis=1)
-    if bad.any():
-        raise InputError(
-            f"mesh: {np.count_nonzero(bad)} of {len(points)} vertices are not finite, "
-            f"the first is vertex {int(np.argmax(bad))}"
-        )
+    check_finite(points)
     if triangles.min() < 0 or triangles.max() >= len(points):
-        raise InputError(
+        raise MeshError(
             f"mesh: face indices run from {triangles.min()} to {triangles.max()}, "
             f"valid are 0 to {len(points) - 1}"
         )
-    _check_closed(triangles, len(points))
-    volume = _volume(points, triangles)
+    triangles, mended = _without_degenerate(triangles)
+    try:
+        neighbours = _neighbours(triangles, len(points))
+    except MeshError:
+        single = _without_doubled(triangles)
+        doubled = len(triangles) - len(single)
+        if not doubled:
+            raise
+        mended.append(f"{doubled} doubled faces were left out")
+        triangles, neighbours = single, _neighbours(single, len(points))
+    return solid_of(points, triangles, neighbours, tuple(mended))
+
+
+def solid_of(
+    points: Floats, triangles: Ints, neighbours: tuple[Ints, Ints], mended: tuple[str, ...] = ()
+) -> Solid:
+    """Return the solid of checked vertices (n, 3) and faces (m, 3), turned outward, with their limits.
+
+    Raises MeshError if it encloses no volume.
+    """
+    x, y, z = (_at_corners(values, triangles) for values in points.T)
+    low, high = np.minimum.reduce(z), np.maximum.reduce(z)
+    squares = [a * a + b * b for a, b in zip(x, y, strict=True)]
+    near, far = np.minimum.reduce(squares), np.maximum.reduce(squares)
+    sides = [(x[i] - x[j], y[i] - y[j]) for i, j in ((1, 0), (2, 0), (2, 1))]
+    longest = np.maximum.reduce([a * a + b * b for a, b in sides])
+    # columns under the faces; from the middle, so that little is lost where a part stands far up
+    shadow = sides[0][0] * sides[1][1] - sides[1][0] * sides[0][1]
+    volume = float(shadow @ (z[0] + z[1] + z[2] - 3 * z[0].mean())) / 6
     if volume == 0.0:
-        raise InputError("mesh: it encloses no volume")
-    turned = volume < 0.0
-    low, high = corner_limits(points[:, 2], triangles)
+        raise MeshError("mesh: it encloses no volume")
+    if volume < 0.0:
+        triangles = np.ascontiguousarray(triangles[:, ::-1])
+        mended = (*mended, "the mesh came inside out and was turned")
     return Solid(
         vertices=points,
-        faces=triangles[:, ::-1] if turned else triangles,
+        faces=triangles,
         face_low=low,
         face_high=high,
-        turned=turned,
+        # a chord of length l between points outside R comes no nearer than sqrt(R^2 - l^2/4)
+        face_near=near - longest / 4,
+        face_far=far,
+        neighbours=neighbours,
+        mended=mended,
     )
 
 
-def corner_limits(values: Floats, faces: Ints) -> tuple[Floats, Floats]:
-    """Return least and largest (m,) of a value (n,) of vertices at the corners of each face."""
-    a, b, c = (values[faces[:, i]] for i in range(3))
-    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+def check_finite(points: Floats) -> None:
+    """Raise MeshError if a coordinate of the points (n, 3) is not finite or too large."""
+    bad = ~np.isfinite(points).all(axis=1)
+    if bad.any():
+        raise MeshError(
+            f"mesh: {np.count_nonzero(bad)} of {len(points)} vertices are not finite, "
+            f"the first is vertex {int(np.argmax(bad))}"
+        )
+    reach = float(np.abs(points).max(initial=0.0))
+    if reach > LARGEST:
+        raise MeshError(f"mesh: coordinates reach {reach:.3g} mm", remedy=f"valid: up to {LARGEST:g} mm")
+
+
+def _at_corners(values: Floats, faces: Ints) -> list[Floats]:
+    """Return a value (n,) of vertices at the three corners of each face, (m,) each."""
+    values = np.ascontiguousarray(values)
+    return [values[faces[:, i]] for i in range(3)]
 
 
 def _array(value: ArrayLike, name: str, dtype: type[np.generic]) -> NDArray:
     try:
         array = np.asarray(value)
         if dtype is np.int64 and array.size and not np.issubdtype(array.dtype, np.integer):
-            raise InputError(f"mesh: {name} must be integers, got {array.dtype}")
+            raise MeshError(f"mesh: {name} must be integers, got {array.dtype}")
         array = np.ascontiguousarray(array, dtype=dtype)
     except (TypeError, ValueError) as fault:
-        raise InputError(f"mesh: {name} are not an array of numbers ({fault})") from fault
+        raise MeshError(f"mesh: {name} are not an array of numbers ({fault})") from fault
     if array.ndim != 2 or array.shape[1] != 3:
-        raise InputError(f"mesh: {name} must have shape (n, 3), got {array.shape}")
+        raise MeshError(f"mesh: {name} must have shape (n, 3), got {array.shape}")
     if len(array) == 0:
-        raise InputError(f"mesh: there are no {name}")
+        raise MeshError(f"mesh: there are no {name}")
     return array
 
 
-def _check_closed(faces: Ints, vertex_count: int) -> None:
-    """Every directed edge occurs once and so does its reverse."""
+def _without_degenerate(faces: Ints) -> tuple[Ints, list[str]]:
+    """Leave out faces that name a vertex twice: their edges cancel, a closed mesh stays closed."""
+    a, b, c = faces.T
+    flat = (a == b) | (b == c) | (c == a)
+    if not flat.any():
+        return faces, []
+    if flat.all():
+        raise MeshError("mesh: every face names a vertex twice")
+    return faces[~flat], [f"{np.count_nonzero(flat)} degenerate faces were left out"]
+
+
+def _without_doubled(faces: Ints) -> Ints:
+    """Leave out what repeats a face, in whatever order it names the same vertices in the same sense."""
+    first = faces.argmin(axis=1)
+    turned = np.take_along_axis(faces, (first[:, None] + np.arange(3)) % 3, axis=1)
+    return faces[np.sort(np.unique(turned, axis=0, return_index=True)[1])]
+
+
+def _neighbours(faces: Ints, vertex_count: int) -> tuple[Ints, Ints]:
+    """Pair the faces on both sides of every edge: it is passed once in each sense, or the mesh is refused."""
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    if (start == end).any():
-        raise InputError(
-            f"mesh: face {int(np.argmax(start == end)) // 3} names a vertex twice",
-            remedy="remove degenerate faces",
-        )
-    forward = np.sort(start * vertex_count + end)
-    backward = np.sort(end * vertex_count + start)
-    doubled = np.count_nonzero(forward[1:] == forward[:-1])
+    up = start < end
+    sides = []
+    for low, high, passed in ((start, end, up), (end, start, ~up)):
+        edge = np.flatnonzero(passed)
+        number = low[edge] * vertex_count + high[edge]
+        order = np.argsort(number)
+        sides.append((number[order], edge[order] // 3))
+    (rising, first), (falling, second) = sides
+    if len(rising) == len(falling) and np.array_equal(rising, falling) and (np.diff(rising) > 0).all():
+        return first, second
+    doubled = sum(int(np.count_nonzero(np.diff(number) == 0)) for number in (rising, falling))
     if doubled:
-        raise InputError(
+        raise MeshError(
             f"mesh: {doubled} edges belong to more than two faces or to faces of opposite orientation",
-            remedy="a closed 2-manifold with faces all turned outward, no duplicates",
+            remedy="a closed 2-manifold with faces all turned outward",
         )
-    if not np.array_equal(forward, backward):
-        lone = np.setdiff1d(forward, backward, assume_unique=True)
-        raise InputError(
-            f"mesh: not closed, {len(lone)} edges have only one face",
-            remedy="a closed 2-manifold; vertices of neighbouring faces must be shared, not repeated",
-        )
-
-
-def _volume(points: Floats, faces: Ints) -> float:
-    a, b, c = (points[faces[:, i]] for i in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+    lone = len(np.setxor1d(rising, falling, assume_unique=True))
+    raise MeshError(
+        f"mesh: not closed, {lone} edges have only one face",
+        remedy="a closed 2-manifold; vertices of neighbouring faces must be shared, not repeated",
+    )

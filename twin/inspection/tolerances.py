@@ -1,4 +1,4 @@
-"""Tolerances: ISO 1328-1:2013 for gear flanks, ISO 4759-1 grade A for widths across flats."""
+"""Tolerances: ISO 1328-1:2013 for gear flanks, ISO 4759-1 and ISO 2768-2 for polygons."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -121,6 +121,26 @@ _WIDTH_TOLERANCES: Mapping[str, tuple[tuple[float, float], ...]] = {
     "h14": ((3, 0.25), (6, 0.30), (10, 0.36), (18, 0.43), (30, 0.52), (50, 0.62), (80, 0.74), (120, 0.87)),
 }
 """tolerance -> (up to and including [mm], width of the tolerance below nominal [mm])"""
+
+
+def flatness_limits_um(length_mm: float) -> dict[str, float]:
+    """Return the general tolerances H, K and L on flatness [µm] of a face of that longest side (ISO 2768-2).
+
+    Empty beyond the standard's table.
+    """
+    row = next((row for longest, row in _FLATNESS if length_mm <= longest), ())
+    return dict(zip("HKL", row, strict=False))
+
+
+_FLATNESS: tuple[tuple[float, tuple[float, float, float]], ...] = (
+    (10, (20, 50, 100)),
+    (30, (50, 100, 200)),
+    (100, (100, 200, 400)),
+    (300, (200, 400, 800)),
+    (1000, (300, 600, 1200)),
+    (3000, (400, 800, 1600)),
+)
+"""longest side up to and including [mm] -> H, K, L [µm] (ISO 2768-2, table 1)"""
 
 
 def _round(value: float) -> float:

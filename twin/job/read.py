@@ -11,19 +11,29 @@ from typing import Any, Literal, NoReturn, TypeVar, get_args, get_origin, get_ty
 import msgspec
 
 import models
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.job.locate import line_of
-from twin.job.schema import InspectionTable, Job, MachineTable, Reference, SetupTable, Tool, WorkTable
+from twin.job.schema import (
+    EventTable,
+    InspectionTable,
+    Job,
+    MachineTable,
+    Reference,
+    SetupTable,
+    Tool,
+    WorkTable,
+)
 
 T = TypeVar("T")
 
-TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead}
+TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead, "disc_wheel": DiscWheel}
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
 MODELS = Path(models.__file__).parent
-TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection")
+TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection", "events")
 
 
 def read_job(path: Path) -> Job:
@@ -59,6 +69,15 @@ def _choices(kind: type, path: tuple[str, ...]) -> str:
     return ", ".join(str(word) for word in get_args(hint)) if get_origin(hint) is Literal else ""
 
 
+def _size(profile: Any) -> dict[str, float]:
+    """Diameter and length of a blank as its profile tells them; nothing where it is none."""
+    if not isinstance(profile, list) or not all(isinstance(p, list) and len(p) == 2 for p in profile):
+        return {}
+    if not profile or not all(isinstance(value, int | float) for point in profile for value in point):
+        return {}
+    return {"diameter_mm": max(p[1] for p in profile), "length_mm": -min(p[0] for p in profile)}
+
+
 class _Reader:
     """The tables of one job file, turned into dataclasses."""
 
@@ -70,7 +89,7 @@ class _Reader:
     def job(self) -> Job:
         self._known(self.data, TABLES, ())
         folder = self.file.resolve().parent
-        work = self._table(WorkTable, ("work",))
+        work = self._work()
         tools = self._tools()
         job = Job(
             name=folder.name,
@@ -82,6 +101,7 @@ class _Reader:
             program=self._program(),
             nominal=self._nominal(work, tools),
             inspection=self._table(InspectionTable, ("inspection",)),
+            events=self._events(),
         )
         model = job.machine.model
         if not re.fullmatch(r"\w+", model) or not (MODELS / model / "machine.toml").is_file():
@@ -93,12 +113,17 @@ class _Reader:
                 f"with stick_out_mm {work.stick_out_mm:g} the work would reach into the chuck",
                 f"at least {work.length_mm:g}",
             )
-        if work.bore_mm >= work.diameter_mm:
-            self._fail(
-                ("work", "bore_mm"),
-                f"bore_mm {work.bore_mm:g} is not inside diameter_mm {work.diameter_mm:g}",
-            )
         return job
+
+    def _work(self) -> WorkTable:
+        raw = self._raw(("work",))
+        work = self._converted(WorkTable, {**_size(raw.get("profile")), **raw}, ("work",))
+        try:
+            work.blank()
+        except InputError as cause:
+            key = "profile" if "profile" in raw else "bore_mm"
+            self._fail(("work", key), cause.text, cause.remedy.removeprefix("valid: "))
+        return work
 
     def _setup(self) -> SetupTable:
         raw = self._raw(("setup",))
@@ -163,6 +188,16 @@ class _Reader:
             filled["tip_radius_factor"] = tool.tip_radius_factor
         return dataclasses.replace(nominal, **filled)
 
+    def _events(self) -> tuple[EventTable, ...]:
+        raw = self.data.get("events", [])
+        if not isinstance(raw, list) or not all(isinstance(one, dict) for one in raw):
+            self._fail(("events",), "events is no list of tables", "[[events]], once for each event")
+        events = tuple(self._converted(EventTable, one, ("events",), nth=nth) for nth, one in enumerate(raw))
+        for nth, event in enumerate(events):
+            if (event.time_s is None) == (event.line is None):
+                self._fail(("events",), "an event has its time_s or its line", "one of the two", nth=nth)
+        return events
+
     def _tagged(self, kinds: Mapping[str, type], path: tuple[str, ...]) -> Any:
         raw = self._raw(path)
         kind = raw.get("kind")
@@ -179,34 +214,51 @@ class _Reader:
         return value
 
     def _table(self, kind: type[T], path: tuple[str, ...], *, extra: tuple[str, ...] = ()) -> T:
-        raw = self._raw(path)
+        return self._converted(kind, self._raw(path), path, extra=extra)
+
+    def _converted(
+        self,
+        kind: type[T],
+        raw: Mapping[str, Any],
+        path: tuple[str, ...],
+        *,
+        extra: tuple[str, ...] = (),
+        nth: int = 0,
+    ) -> T:
         fields = [f.name for f in dataclasses.fields(kind)]  # pyright: ignore[reportArgumentType]
-        self._known(raw, (*extra, *fields), path)
+        self._known(raw, (*extra, *fields), path, nth)
         values = {key: value for key, value in raw.items() if key not in extra}
-        self._finite(values, path)
+        self._finite(values, path, nth)
         try:
             return msgspec.convert(values, kind, strict=True)
         except msgspec.ValidationError as cause:
             text, _, at = str(cause).partition(" - at ")
             inner = tuple(re.findall(r"[A-Za-z_]\w*", at.strip("`$")))
             where = (*path, *inner)
-            self._fail(where, f"{'.'.join(where)}: {text}", _choices(kind, inner))
+            self._fail(where, f"{'.'.join(where)}: {text}", _choices(kind, inner), nth=nth)
         except HobtwinError as cause:
-            self._fail(path, f"{'.'.join(path)}: {cause.text}", cause.remedy)
+            valid = cause.remedy.removeprefix("valid: ")
+            self._fail(path, f"{'.'.join(path)}: {cause.text}", valid, nth=nth)
 
-    def _finite(self, values: Mapping[str, Any], path: tuple[str, ...]) -> None:
-        for key, value in values.items():
-            if isinstance(value, float) and not math.isfinite(value):
-                self._fail((*path, key), f"{key} = {value} is not a finite number")
-            if isinstance(value, dict):
-                self._finite(value, (*path, key))
+    def _finite(self, value: Any, path: tuple[str, ...], nth: int = 0) -> None:
+        """Refuse numbers that are none, however deep in tables and lists."""
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                self._finite(inner, (*path, key), nth)
+        elif isinstance(value, list):
+            for inner in value:
+                self._finite(inner, path, nth)
+        elif isinstance(value, float) and not math.isfinite(value):
+            self._fail(path, f"{path[-1]} = {value} is not a finite number", nth=nth)
 
-    def _known(self, raw: Mapping[str, Any], valid: tuple[str, ...], path: tuple[str, ...]) -> None:
+    def _known(
+        self, raw: Mapping[str, Any], valid: tuple[str, ...], path: tuple[str, ...], nth: int = 0
+    ) -> None:
         for key in raw:
             if key not in valid:
                 what = f"[{'.'.join(path)}]" if path else "the job"
-                self._fail((*path, key), f"unknown key {key!r} in {what}", ", ".join(valid))
+                self._fail((*path, key), f"unknown key {key!r} in {what}", ", ".join(valid), nth=nth)
 
-    def _fail(self, path: tuple[str, ...], text: str, valid: str = "") -> NoReturn:
-        place = Place(file=str(self.file), line=line_of(self.text, path))
+    def _fail(self, path: tuple[str, ...], text: str, valid: str = "", *, nth: int = 0) -> NoReturn:
+        place = Place(file=str(self.file), line=line_of(self.text, path, nth))
         raise InputError(text, place=place, remedy=f"valid: {valid}" if valid else "")

@@ -6,13 +6,15 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
+from twin.cutting.blank import Blank
 from twin.inspection.nominal import Nominal
 
 Positive = Annotated[float, Meta(gt=0)]
 NotNegative = Annotated[float, Meta(ge=0)]
-Tool = Hob | PolygonHead
+Tool = Hob | PolygonHead | DiscWheel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +26,8 @@ class MachineTable:
     setup: Literal["hobbing", "tilted"] = "hobbing"
     parameters: dict[str, int | float | str] = field(default_factory=dict)
     """controller parameters: number, #bit, .axis"""
-    signals: dict[str, bool | int] = field(default_factory=dict)
+    signals: dict[str, bool | Annotated[int, Meta(ge=0, le=1)]] = field(default_factory=dict)
+    """input signals from the start"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,14 +35,26 @@ class WorkTable:
     """`[work]`: the blank, from Z0 (front face) to Z-length"""
 
     diameter_mm: Positive
+    """the largest; with a profile it may be left out, and so may the length"""
     length_mm: Positive
     bore_mm: NotNegative = 0.0
+    profile: tuple[tuple[float, float], ...] | None = None
+    """[[z, diameter], …] of steps, cones and chamfers, from the front face (z = 0) on"""
     material: str = "16MnCr5"
     clamping: Literal["arbor", "chuck"] = "arbor"
     arbor_diameter_mm: Positive | None = None
     """left out = 0.6 of the root diameter"""
     stick_out_mm: Positive | None = None
     """front face from the chuck's face; left out = length + 80"""
+
+    def blank(self) -> Blank:
+        """The body to be cut. Raises InputError where it contradicts itself."""
+        return Blank(
+            diameter_mm=self.diameter_mm,
+            length_mm=self.length_mm,
+            bore_mm=self.bore_mm,
+            profile=self.profile,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,6 +87,18 @@ class InspectionTable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class EventTable:
+    """One of `[[events]]`: what the operator does, and when"""
+
+    do: str
+    """as `feed hold`, `feed override 80`, `jog Z -5.0`"""
+    time_s: NotNegative | None = None
+    """from the start of the program; this or `line`"""
+    line: Annotated[int, Meta(ge=1)] | None = None
+    """when the block of this line of the program begins"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
     """A whole job: machine, blank, tools, program, and what the part should be."""
 
@@ -86,3 +113,4 @@ class Job:
     program: Path
     nominal: Nominal | None
     inspection: InspectionTable
+    events: tuple[EventTable, ...] = ()

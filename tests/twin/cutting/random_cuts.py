@@ -9,9 +9,10 @@ import synthetic_motion
 from hypothesis import strategies as st
 
 from twin.cutters.cutter import Cutter
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
-from twin.cutting.field import DepthField
+from twin.cutting.fields import tool_field
 from twin.cutting.motion import CutterMotion
 
 
@@ -30,11 +31,24 @@ class RandomCut:
     """of the stock about z = 0 [mm]"""
     feature: float
     """size of a tooth or an insert [mm]"""
+    gash_lead: float = math.inf
+    """[mm], + right-hand"""
+    hollow: bool = False
+    """whether the outline has hollow corners: then the field inside is no distance, only positive"""
 
-    def field(self) -> DepthField:
+    chords: float = 0.0
+    """how far the outline may stand out of its hollow arcs [mm]"""
+
+    def truth(self, point):
+        """Depth by the independent evaluator, and the instant [samples] of it."""
+        if self.cutter.revolved:
+            return brute_force.wheel_field(point, self.motion, self.outlines)
+        return brute_force.field(point, self.motion, self.cutter, self.outlines, self.pitch, self.gash_lead)
+
+    def field(self):
         """The kernel's field, for blocks that stand a feature out of the stock."""
         room = self.feature
-        return DepthField(
+        return tool_field(
             self.cutter,
             self.motion,
             self.radii[1] + 2 * room,
@@ -69,6 +83,10 @@ def hobbings(draw):
         hand=draw(st.sampled_from(["right", "left"])),
         tip_radius_factor=draw(st.sampled_from([0.0, 0.1, 0.38])),
         length_mm=draw(st.sampled_from([None, 4.0 * module])),
+        shift_mm=draw(st.sampled_from([0.0, 1.7 * module])),
+        gash=draw(st.sampled_from(["straight", "helical"])),
+        protuberance_mm=draw(st.sampled_from([0.0, 0.05 * module])),
+        chamfer_height_mm=draw(st.sampled_from([0.0, 0.4 * module])),
     )
     root = module * (teeth / 2.0 / math.cos(math.radians(helix)) - 1.25)
     cutter, motion = synthetic_motion.hobbing(
@@ -81,7 +99,7 @@ def hobbings(draw):
         step_deg=draw(between(1.0, 15.0)),
         swivel_error=draw(st.sampled_from([0.0, 0.05])),
     )
-    outlines, pitch = brute_force.hob_outlines(
+    outlines, pitch, gash_lead = brute_force.hob_outlines(
         module=module,
         outside_diameter=hob.outside_diameter_mm,
         starts=starts,
@@ -89,6 +107,9 @@ def hobbings(draw):
         addendum=1.25,
         tip_radius=hob.tip_radius_factor,
         dedendum=1.25,
+        helical=hob.gash == "helical",
+        protuberance=hob.protuberance_mm,
+        chamfer=hob.chamfer_height_mm,
     )
     return RandomCut(
         cutter=cutter,
@@ -98,17 +119,25 @@ def hobbings(draw):
         radii=(root - 0.5 * module, root + 2.3 * module),
         half_length=1.5 * module,
         feature=module,
+        gash_lead=gash_lead if hob.hand == "left" else -gash_lead,
+        hollow=hob.protuberance_mm > 0 or hob.chamfer_height_mm > 0,
     )
+
+
+INSERTS = (
+    # a rounded nose on a wider shank, a stepped insert with an undercut, a pointed one with hollow flanks
+    ((0.0, 0.0, 0.5), (0.5, 0.5), (0.6, 1.2), (1.4, 1.6)),
+    ((0.4, 0.0), (0.4, 0.5), (1.0, 0.5), (1.0, 0.9), (0.7, 0.9), (0.7, 2.0)),
+    ((0.2, 0.0, -1.5), (1.1, 1.1)),
+)
 
 
 @st.composite
 def polygon_turnings(draw):
-    """A head of one to three inserts at the ratios of geometry.md 3."""
-    head = PolygonHead(
-        inserts=draw(st.integers(1, 3)),
-        tip_radius_mm=draw(between(25.0, 60.0)),
-        corner_radius_mm=draw(st.sampled_from([0.0, 0.4])),
-    )
+    """A head of one to three inserts at the ratios of geometry.md 3, plain or with a profile of its own."""
+    inserts, radius = draw(st.integers(1, 3)), draw(between(25.0, 60.0))
+    corner, profile = draw(st.sampled_from([(0.0, None), (0.4, None), *((0.0, p) for p in INSERTS)]))
+    head = PolygonHead(inserts=inserts, tip_radius_mm=radius, corner_radius_mm=corner, profile=profile)
     across = draw(between(10.0, 30.0))
     cutter, motion = synthetic_motion.polygon_turning(
         head,
@@ -121,13 +150,15 @@ def polygon_turnings(draw):
     return RandomCut(
         cutter=cutter,
         motion=draw(spoiled(motion)),
-        outlines=brute_force.insert_outlines(
-            tip_radius=head.tip_radius_mm, width=2.0, corner_radius=head.corner_radius_mm
-        ),
+        outlines=brute_force.chain_outlines(profile, tip=radius)
+        if profile
+        else brute_force.insert_outlines(tip_radius=radius, width=2.0, corner_radius=corner),
         pitch=0.0,
         radii=(0.45 * across, 0.6 * across),
         half_length=2.0,
         feature=1.0,
+        hollow=profile is not None,
+        chords=1e-4 if profile == INSERTS[2] else 0.0,
     )
 
 
@@ -158,4 +189,58 @@ def spoiled(draw, motion):
     return motion
 
 
-cuts = st.one_of(hobbings(), polygon_turnings())
+WHEELS = (
+    # rounded, hollow as for the flanks of a gear, stepped
+    ((0.6, 0.0, 0.4), (1.0, 0.4), (1.9, 3.5)),
+    ((0.5, 0.0, -9.0), (1.2, 2.5), (2.2, 3.5)),
+    ((0.4, 0.0), (0.4, 1.5), (1.2, 1.5), (1.8, 3.5)),
+)
+
+
+@st.composite
+def grindings(draw):
+    """A form wheel on some gaps of a spur or helical gear."""
+    teeth, helix = draw(st.integers(12, 30)), draw(between(-25.0, 25.0))
+    diameter = draw(between(20.0, 120.0))
+    profile = draw(st.sampled_from([None, *WHEELS]))
+    module = 2.0
+    wheel = DiscWheel(
+        outside_diameter_mm=diameter,
+        normal_module_mm=None if profile else module,
+        profile=profile,
+    )
+    root = module * (teeth / 2.0 / math.cos(math.radians(helix)) - 1.25)
+    cutter, motion = synthetic_motion.grinding(
+        wheel,
+        teeth=teeth,
+        module=module,
+        helix_deg=helix,
+        tip_x=root,
+        z=(0.6 * diameter, -0.6 * diameter),
+        gaps=3,
+        samples=draw(st.sampled_from([30, 200])),
+    )
+    chain = profile or draw_rack(module)
+    return RandomCut(
+        cutter=cutter,
+        motion=draw(spoiled(motion)),
+        outlines=brute_force.chain_outlines(chain, tip=diameter / 2.0),
+        pitch=0.0,
+        radii=(root - 0.3, root + 4.5),
+        half_length=3.0,
+        feature=1.0,
+        hollow=profile is not None,
+        chords=1e-4 if profile == WHEELS[1] else 0.0,
+    )
+
+
+def draw_rack(module):
+    """The straight-sided wheel as a chain, worked out by hand for 20°, 1.25, 1.25 and 0.38 modules."""
+    tan, cos, sin = math.tan(math.radians(20.0)), math.cos(math.radians(20.0)), math.sin(math.radians(20.0))
+    r = 0.38 * module
+    flat = math.pi * module / 4.0 - 1.25 * module * tan - r * (1.0 - sin) / cos
+    end = math.pi * module / 4.0 + 1.25 * module * tan
+    return ((flat, 0.0, r), (flat + r * cos, r * (1.0 - sin)), (end, 2.5 * module))
+
+
+cuts = st.one_of(hobbings(), polygon_turnings(), grindings())

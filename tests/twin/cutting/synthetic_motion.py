@@ -63,6 +63,31 @@ def polygon_turning(head, *, ratio, across_flats, work_turns, z, step_deg):
     return head.cutter(), motion
 
 
+def grinding(wheel, *, teeth, module, helix_deg=0.0, tip_x, z, gaps, samples=80):
+    """Single indexing: in each gap one stroke from z[0] to z[1] at depth, a way out, back, and round."""
+    helix = math.radians(helix_deg)
+    out = tip_x + 0.3 * wheel.outside_diameter_mm
+    stroke = np.linspace(z[0], z[1], samples)
+    heights = np.concatenate([stroke, np.full(10, z[1]), np.linspace(z[1], z[0], 10)])
+    reach = np.concatenate([np.full(samples, tip_x), np.linspace(tip_x, out, 10), np.full(10, out)])
+    n = gaps * len(heights)
+    height, x = np.tile(heights, gaps), np.tile(reach, gaps)
+    gap = np.repeat(np.arange(gaps), len(heights))
+    # the last moves of each gap turn the work on to the next
+    share = np.tile(np.concatenate([np.zeros(samples + 10), np.linspace(0.0, 1.0, 10)]), gaps)
+    work = 2.0 * math.pi / teeth * (gap + share)
+    work = work - 2.0 * (height - z[0]) * math.sin(helix) / (module * teeth)
+    cutter = wheel.cutter(helix)
+    motion = CutterMotion(
+        time_s=1e-3 * np.arange(n),
+        work_angle=work,
+        tool_angle=0.3 * np.arange(n),
+        centre=np.column_stack([x + wheel.outside_diameter_mm / 2.0, np.zeros(n), height]),
+        basis=tool_basis(cutter.swivel),
+    )
+    return cutter, motion
+
+
 def at_speed(motion, speed):
     """The same motion resampled so that it runs at `speed` (samples per sample, one value per new sample)."""
     clock = np.concatenate([[0.0], np.cumsum(speed)])

@@ -10,7 +10,7 @@ from random_cuts import cuts
 
 from twin.cutters.hob import Hob
 from twin.cutting.engagement import StockCylinder, scraped
-from twin.cutting.field import DepthField
+from twin.cutting.fields import tool_field
 from twin.cutting.motion import RigidTransform
 from twin.cutting.passes import find_passes
 from twin.cutting.refine import cull, first_cull
@@ -102,7 +102,7 @@ def test_no_pass_that_cuts_is_left_out_at_the_start(cut, seed):
     """The passes found for the stock, against those found for one a hundred times its size."""
     field = cut.field()
     points = cut.points(20, seed)
-    everything = DepthField(cut.cutter, cut.motion, 1.01 * cut.radii[1], (-1e4, 1e4))
+    everything = tool_field(cut.cutter, cut.motion, 1.01 * cut.radii[1], (-1e4, 1e4))
     expected = all_depths(everything, points).max(axis=1, initial=-np.inf)
     near = Sweep((field,)).near(points, np.full(len(points), 1e-6))
     for point, all_of_them, row in zip(points, expected, range(len(points)), strict=True):

@@ -9,9 +9,10 @@ from rays import deepest
 
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
-from twin.cutting.cut import CHECKED, cut
+from twin.cutting.blank import Blank
+from twin.cutting.check import CHECKED
+from twin.cutting.cut import cut
 from twin.cutting.field import DepthField
-from twin.cutting.stock import Blank
 from twin.errors import PartError
 
 HOB = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)

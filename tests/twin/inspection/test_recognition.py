@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 
 from twin.errors import InputError
-from twin.inspection import deviation_map, inspect, to_json
+from twin.inspection.deviation import deviation_map
+from twin.inspection.inspection import inspect
 from twin.inspection.nominal import GearNominal, PolygonNominal
 from twin.inspection.result import Verdict
+from twin.inspection.sheet import to_json
 
 HOB_RADIUS = 35.0
 
@@ -137,6 +139,18 @@ def test_inside_out_is_turned_and_said(spur, named):
     assert result.findings[-1] == "the mesh came inside out and was turned"
 
 
+def test_doubled_and_degenerate_faces_are_left_out_and_said(spur, named):
+    vertices, faces = spur
+    turned = np.roll(faces[10:15], 1, axis=1)
+    for extra, words in (
+        (turned, "5 doubled faces were left out"),
+        ([[3, 3, 4]], "1 degenerate faces were left out"),
+    ):
+        result = inspect(vertices, np.concatenate([faces, extra]), named(accuracy_class=8))
+        assert result.verdict is Verdict.IN
+        assert result.findings[-1] == words
+
+
 def broken(change):
     vertices, faces = mesh_of(m3.Manifold.cube((10, 10, 10), True))
     vertices, faces = vertices.copy(), faces.copy()
@@ -153,13 +167,14 @@ def with_nan(vertices, faces):
     [
         (with_nan, "1 of 8 vertices are not finite, the first is vertex 3"),
         (lambda v, f: (v, f[1:]), "not closed, 3 edges have only one face"),
-        (lambda v, f: (v, np.concatenate([f, f[:1]])), "3 edges belong to more than two faces"),
+        (lambda v, f: (v, np.concatenate([f, f[:1, ::-1]])), "3 edges belong to more than two faces"),
+        (lambda v, f: (v, np.concatenate([f[:1, ::-1], f[1:]])), "3 edges .* of opposite orientation"),
         (lambda v, f: (v[:7], f), "face indices run from 0 to 7, valid are 0 to 6"),
         (lambda v, f: (v, f * 1.0), "faces must be integers, got float64"),
         (lambda v, f: (v[:, :2], f), r"vertices must have shape \(n, 3\), got \(8, 2\)"),
         (lambda v, f: (v, f[:0]), "there are no faces"),
         (lambda v, f: ("nonsense", f), "vertices are not an array of numbers"),
-        (lambda v, f: (v, np.concatenate([f, [[0, 0, 1]]])), "names a vertex twice"),
+        (lambda v, f: (v, np.array([[0, 0, 1]])), "every face names a vertex twice"),
         (lambda v, f: (v * [1, 1, 0], f), "it encloses no volume"),
     ],
 )

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from twin.inspection.sections import (
     circle_crossings,
-    faces_at_radius,
     outer_outlines,
     outline,
     plane_segments,
@@ -52,9 +51,7 @@ def test_circle_crossings_bound_the_arcs_inside(angles, spread, radius):
     solid = solid_of(shape)
     segments = plane_segments(solid, np.array([0.5]))
     found = circle_crossings(segments, np.array([radius]))
-    near = circle_crossings(
-        plane_segments(solid, np.array([0.5]), faces=faces_at_radius(solid, radius)), np.array([radius])
-    )
+    near = circle_crossings(plane_segments(solid, np.array([0.5]), radius=radius), np.array([radius]))
     np.testing.assert_array_equal(near.angle, found.angle)
     assert np.count_nonzero(found.left) * 2 == len(found.angle)
     assert (found.left != np.roll(found.left, 1)).all()

@@ -6,10 +6,10 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
-from twin.inspection import inspect
+from twin.inspection.inspection import inspect
 from twin.inspection.nominal import PolygonNominal
 from twin.inspection.result import Verdict
-from twin.summary import part_lines
+from twin.inspection.text import text_lines
 
 HEXAGON = {"across_flats": 17.0, "cutter_radius": 40.0, "inserts": 3, "sides": 6, "width": 8.0}
 NOMINAL = PolygonNominal(number_of_sides=6, across_flats_mm=17.0)
@@ -106,7 +106,7 @@ def test_nothing_reads_as_minus_nothing(parts, phase_deg):
     result = inspect(*mesh, NOMINAL)
     assert result.verdict is Verdict.IN
     assert (result.polygon.bow_um, result.polygon.twist_deg_per_mm) == (0.0, 0.0)
-    said = " ".join((*result.findings, *part_lines(result)))
+    said = " ".join((*result.findings, *text_lines(result)))
     assert "-0.0" not in said
     assert "concave" not in said
 

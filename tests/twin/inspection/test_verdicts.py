@@ -7,10 +7,10 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
-from twin.inspection import inspect
+from twin.inspection.inspection import inspect
 from twin.inspection.nominal import PolygonNominal
 from twin.inspection.result import Verdict
-from twin.summary import part_lines
+from twin.inspection.text import text_lines
 
 
 @pytest.fixture(scope="module")
@@ -125,4 +125,4 @@ def test_perfect_gears_read_no_minus_nothing(parts, named, helix_deg):
     mesh = parts.gear_mesh(teeth=20, module=2.0, helix_deg=helix_deg, z_step=0.5, roll_step=0.1)
     for nominal in (None, named(helix_deg=helix_deg, accuracy_class=8)):
         result = inspect(*mesh, nominal)
-        assert not re.search(r"-0\.0+(?![\d])", " ".join((*result.findings, *part_lines(result))))
+        assert not re.search(r"-0\.0+(?![\d])", " ".join((*result.findings, *text_lines(result))))

@@ -1,0 +1,1 @@
+"""Custom macro B: variables, expressions, statements, macro calls (rulings, section 1)."""

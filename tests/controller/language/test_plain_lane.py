@@ -1,0 +1,85 @@
+"""The short lane gives what the general way gives: the same commands, modal state, warnings and alarms."""
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from controller.interpreter import Interpreter
+from controller.plain_lane import PlainLane
+
+NUMBER = st.sampled_from(
+    [
+        "1",
+        "-12.5",
+        "+3.",
+        ".25",
+        "-.5",
+        "0",
+        "-0",
+        "12345.678",
+        "99999.999",
+        "100000",
+        "1.2345",
+        "5.-",
+        "1.2.3",
+    ]
+)
+AXIS = st.tuples(st.sampled_from("XZUWYCVHB"), NUMBER).map("".join)
+PLAIN = st.sampled_from("XUZW")
+WORD = st.one_of(
+    st.tuples(PLAIN, NUMBER).map("".join),
+    AXIS,
+    st.sampled_from(
+        ["G00", "G01", "G0", "G1", "g01", "G001", "G54", "G99", "G98", "G20", "G21", "M03 S100", "M05"]
+    ),
+    st.tuples(st.just("F"), st.sampled_from(["100", "250.", "0.125", "0", "1234567.", "-5.", ".2"])).map(
+        "".join
+    ),
+    st.sampled_from(
+        ["N10", "N123456789", "/", "/2", "(c)", "; rest", "；x", "G04 P5", "#1", "T0101", "G81 T20", "G80"]
+    ),
+)
+BLOCK = st.tuples(
+    st.sampled_from(["", "N10 ", "N20"]),
+    st.sampled_from(["", "G00 ", "G01", "G1 "]),
+    st.sampled_from(["", "X10.5 ", "X-3", "U.5", "x4."]),
+    st.sampled_from(["", " Z-2.", "W-1.25", "Z+100.001\t"]),
+    st.sampled_from(["", " F100", "F0.125", "F250. ", "F0"]),
+    st.sampled_from(["", ";", " ; (", "(c)"]),
+).map("".join)
+PROGRAM = st.lists(BLOCK | BLOCK | st.lists(WORD, max_size=4).map(" ".join), min_size=1, max_size=12).map(
+    "\n".join
+)
+
+
+def outcome(read, monkeypatch: pytest.MonkeyPatch, text: str, setup: str, dpi: int, *, lane: bool) -> tuple:
+    with monkeypatch.context() as patch:
+        if not lane:
+            patch.setattr(PlainLane, "enter", lambda self, modal: False)
+        reading = read(f"{text}\nM30", setup, parameters={"3401#0": dpi}, signals={"BDT2": True})
+    assert isinstance(reading.interpreter, Interpreter)
+    return (reading.steps, reading.warnings, reading.alarm, reading.machine, reading.interpreter.modal)
+
+
+@settings(max_examples=400, deadline=None)
+@given(text=PROGRAM, setup=st.sampled_from(["hobbing", "tilted"]), dpi=st.sampled_from([0, 1]))
+@example(text="G99 M03 S100\nG01 X1. F0.2\nG98\nX2.", setup="hobbing", dpi=1)
+@example(text="G20 F10\nG21 G01 X1.\nX2. F5", setup="hobbing", dpi=1)
+@example(text="G01\nX5. F100\nX6\nG0X7\nX8\nG1X9", setup="hobbing", dpi=1)
+@example(text="G01 X1. F100\nF200\nX2.\nF0\nX3.", setup="hobbing", dpi=0)
+def test_both_ways_agree(read, text: str, setup: str, dpi: int) -> None:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        short = outcome(read, monkeypatch, text, setup, dpi, lane=True)
+        general = outcome(read, monkeypatch, text, setup, dpi, lane=False)
+    assert short == general
+
+
+def test_the_lane_is_taken(read, monkeypatch) -> None:
+    """Plain blocks never reach the lexer."""
+    import controller.syntax
+
+    seen: list[str] = []
+    lex = controller.syntax.lex
+    monkeypatch.setattr(controller.syntax, "lex", lambda line, *rest: seen.append(line) or lex(line, *rest))
+    read("G98 F100\nN10 G01 X10.123 Z-5.2 F100.\nN20 G00 X5. Z1.\nX4.\nM30")
+    assert seen == ["G98 F100", "M30"]

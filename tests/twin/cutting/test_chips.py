@@ -1,0 +1,132 @@
+"""Chips: their sum against the part, single ones against areas of circles, and twice the resolution."""
+
+import math
+
+import numpy as np
+import pytest
+
+from twin.cutters.hob import Hob
+from twin.cutters.polygon_head import PolygonHead
+from twin.cutting.blank import Blank
+from twin.cutting.chips import chips
+from twin.cutting.cut import cut
+from twin.cutting.motion import CutterMotion
+from twin.errors import InputError
+
+BAR = Blank(diameter_mm=20.0, length_mm=3.0)
+FLY = PolygonHead(inserts=1, tip_radius_mm=30.0)
+STEPS = (0.8, 0.6, 0.5, 0.9)
+"""Infeed before each turn of the fly cutter [mm]"""
+
+
+def fly_cutting(synthetic, *, fed_before=None):
+    """One insert, the bar at rest: the slide steps in while the insert is on its far side, then one turn."""
+    turn = np.linspace(0.0, 2.0 * math.pi, 721)
+    tool, centre = [], []
+    depth = 0.0
+    for number, step in enumerate(STEPS):
+        # half a turn away from the bar at both ends
+        tool.append(turn[:-1] + 2.0 * math.pi * number + math.pi)
+        centre.append(np.full(720, 10.0 + 30.0 - depth))
+        early = slice(0, 60)
+        centre[-1][early] = 10.0 + 30.0 - depth - step * np.clip(np.linspace(0.0, 1.2, 60), 0.0, 1.0)
+        depth += step
+        centre[-1][60:] = 10.0 + 30.0 - depth
+    x = np.concatenate(centre)
+    n = len(x)
+    return FLY.cutter(), CutterMotion(
+        time_s=1e-3 * np.arange(n),
+        work_angle=np.zeros(n),
+        tool_angle=np.concatenate(tool),
+        centre=np.column_stack([x, np.zeros(n), np.full(n, -1.5)]),
+        basis=synthetic.tool_basis(0.0),
+    )
+
+
+def lens(depth, r=10.0, radius=30.0):
+    """Area common to the bar's circle and the tool's, `depth` into each other."""
+    d = r + radius - depth
+    one = math.acos((d * d + r * r - radius * radius) / (2 * d * r))
+    two = math.acos((d * d + radius * radius - r * r) / (2 * d * radius))
+    return r * r * (one - math.sin(2 * one) / 2) + radius * radius * (two - math.sin(2 * two) / 2)
+
+
+@pytest.fixture(scope="module")
+def flown(synthetic):
+    return chips(BAR, (fly_cutting(synthetic),), resolution_mm=0.1)
+
+
+def test_each_chip_is_the_crescent_between_two_turns(flown):
+    depth = np.cumsum(STEPS)
+    areas = np.diff([0.0, *(lens(d) for d in depth)])
+    assert len(flown.volume_mm3) == len(STEPS)
+    np.testing.assert_allclose(flown.volume_mm3, 2.0 * areas, rtol=0.02)
+    # two millimetres of the edge and, up to the chip's thickness, its ends; in squares of 0.2 mm
+    np.testing.assert_allclose(flown.width_mm, 2.0 + 2.0 * np.array(STEPS), atol=0.8)
+    # thickest in the middle, where the slide's step is the height above the edge
+    np.testing.assert_allclose(flown.thickness_max_mm[1:], STEPS[1:], rtol=0.02)
+    # the first is thickest on the bar's own surface: the outermost ring is half a step below that
+    assert STEPS[0] - flown.thickness_max_mm[0] == pytest.approx(flown.resolution_mm / 2.0, rel=0.02)
+    assert (np.diff(flown.time_s) > 0.5).all()
+    np.testing.assert_array_equal(flown.tooth, 0)
+
+
+def test_mean_thickness_is_twice_the_mean_height(flown):
+    """By quadrature of the last crescent: each point's height above the tool's circle."""
+    depth = sum(STEPS)
+    x, y = np.meshgrid(np.linspace(5.0, 10.0, 1201), np.linspace(-10.0, 10.0, 1601), indexing="ij")
+    before = np.hypot(x - (40.0 - depth + STEPS[-1]), y)
+    now = np.hypot(x - (40.0 - depth), y)
+    chip = (np.hypot(x, y) < 10.0) & (before > 30.0) & (now < 30.0)
+    # the edge has two ends as well: near them they are closer than its line
+    height = np.minimum((30.0 - now)[chip][:, None], np.linspace(0.01, 0.99, 50))
+    assert flown.thickness_mean_mm[-1] == pytest.approx(2.0 * height.mean(), rel=0.03)
+
+
+def test_twice_the_resolution_changes_no_chip_by_two_percent(flown, synthetic):
+    finer = chips(BAR, (fly_cutting(synthetic),), resolution_mm=flown.resolution_mm / 2.0)
+    np.testing.assert_allclose(flown.volume_mm3, finer.volume_mm3, rtol=0.02)
+    np.testing.assert_allclose(flown.thickness_max_mm[1:], finer.thickness_max_mm[1:], rtol=0.02)
+    np.testing.assert_allclose(flown.thickness_mean_mm, finer.thickness_mean_mm, rtol=0.02)
+
+
+def test_all_chips_together_are_what_the_part_lost(synthetic):
+    """A sound gear, and one whose teeth a wrong ratio destroys: true unions count nothing twice."""
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+    blank = Blank(diameter_mm=24.0, length_mm=1.0, bore_mm=10.0)
+    for factor in (1.0, 0.93):
+        tool = synthetic.hobbing(
+            hob, teeth=10, tip_x=7.5, z=(13.0, -14.0), feed=4.0, step_deg=6.0, ratio_factor=factor
+        )
+        part = cut(blank, (tool,), cell_mm=0.12).remains
+        lost = part.blank_volume_mm3 - part.volume_mm3 + 0.0 - sum(part.loose_volumes_mm3)
+        made = chips(blank, (tool,), resolution_mm=0.12)
+        assert made.total_mm3 == pytest.approx(lost, rel=2e-3)
+        assert (np.diff(made.time_s) >= 0).all()
+        assert made.thickness_max_mm.max() < 2.25 * 2.0
+
+
+def test_a_second_pass_over_the_same_way_takes_nothing(synthetic):
+    cutter, motion = fly_cutting(synthetic)
+    once = chips(BAR, ((cutter, motion),), resolution_mm=0.2)
+    twice = chips(BAR, ((cutter, motion), (cutter, motion)), resolution_mm=0.2)
+    assert twice.total_mm3 == pytest.approx(once.total_mm3, rel=1e-9)
+    assert twice.volume_mm3[twice.stretch == 1].sum() == pytest.approx(0.0, abs=1e-9)
+
+
+def test_no_cut_makes_no_chips(synthetic):
+    tool = synthetic.polygon_turning(
+        FLY, ratio=2, across_flats=60.0, work_turns=1, z=(0.0, -3.0), step_deg=2.0
+    )
+    none = chips(BAR, (tool,), resolution_mm=0.3)
+    assert none.total_mm3 == 0.0
+    assert len(none.time_s) == 0
+
+
+@pytest.mark.parametrize(
+    ("resolution", "said"),
+    [(0.0, "above 0"), (math.nan, "above 0"), (1e-4, "more memory than allowed .*or more")],
+)
+def test_a_resolution_that_cannot_be_is_refused(synthetic, resolution, said):
+    with pytest.raises(InputError, match=said):
+        chips(BAR, (fly_cutting(synthetic),), resolution_mm=resolution)

@@ -1,0 +1,252 @@
+"""The chips: what each tooth takes away as it passes, in the order of time.
+
+The blank is cut into rings about the work axis. Along a ring each bite removes intervals of angle, from
+crossing to crossing of its depth. In the order of time an interval counts only where no earlier one has been:
+true unions, whatever the program does. What is left of a bite's intervals, over all rings, is its chip.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.blank import Blank
+from twin.cutting.fields import tool_field
+from twin.cutting.meeting import Meeting
+from twin.cutting.motion import CutterMotion
+from twin.cutting.rings import Intervals, Rings, intervals, pass_order
+from twin.cutting.sweep import Sweep
+from twin.errors import InputError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Progress = Callable[[str, float], None]
+
+PLACES = 8_000_000
+"""Places on rings that a run has where no resolution is asked for; it may have eight times as many."""
+SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chips:
+    """One row for each tooth that took something away as it passed, in the order of time."""
+
+    time_s: Floats
+    """(n,) when it took the first of it"""
+    stretch: Ints
+    """(n,) which of the run's stretches with one tool, from 0"""
+    turn: Ints
+    """(n,) which pass of that stretch, from 0"""
+    tooth: Ints
+    """(n,) number of the tooth along its edge; 0 also for the land between the teeth"""
+    volume_mm3: Floats
+    """(n,)"""
+    thickness_max_mm: Floats
+    """(n,) farthest that the material stood above the edge, in its rake plane; where that is the blank's own
+    surface, half the resolution less"""
+    thickness_mean_mm: Floats
+    """(n,) twice the material's mean height above the edge: of a chip of even thickness, its thickness"""
+    width_mm: Floats
+    """(n,) length of the edge that took something"""
+    resolution_mm: float
+    """distance of the rings"""
+
+    @property
+    def total_mm3(self) -> float:
+        """Volume of all chips."""
+        return float(self.volume_mm3.sum())
+
+    def columns(self) -> dict[str, NDArray]:
+        """The columns by name, for a file."""
+        return {f.name: np.asarray(getattr(self, f.name)) for f in fields(self)}
+
+
+@dataclass(frozen=True, slots=True)
+class _Shares:
+    """Pieces of intervals that were the first to be removed."""
+
+    bite: Ints
+    """(n,) numbered through all tools"""
+    volume: Floats
+    height: Floats
+    """(n, 3) above the edge at both ends and the middle [mm]"""
+    instant: Floats
+    foot: Floats
+    """(n, 2) where on the edge (s, rho) the middle lies [mm]"""
+    slope: Floats
+    """(n,) way along the edge for each square of a lattice over (s, rho) that it crosses, in its sides"""
+
+
+def chips(
+    blank: Blank,
+    tools: tuple[tuple[Cutter, CutterMotion], ...],
+    *,
+    resolution_mm: float | None = None,
+    progress: Progress = lambda _stage, _share: None,
+) -> Chips:
+    """The chips of a cut; `resolution_mm` is the distance of the rings.
+
+    Raises InputError for a resolution that is none, or would need too much memory.
+    """
+    step = _step(blank, tools, resolution_mm)
+    # the coarsest blocks are sixths of a turn at most, and their hulls stand out of the blank
+    hull = blank.radius / math.cos(math.pi / 6.0)
+    sweep = Sweep(tuple(tool_field(c, m, hull, blank.z_range) for c, m in tools))
+    rings = Rings.of(blank, step)
+    shares: list[_Shares] = []
+    slabs = list(rings.slabs()) if sweep.passes else []
+    for number, low in enumerate(slabs):
+        progress("chips", number / len(slabs))
+        shares.append(_shares(sweep, rings, intervals(sweep, rings, low), step))
+    progress("chips", 1.0)
+    return _summed(sweep, tools, shares, step)
+
+
+def _step(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], resolution: float | None) -> float:
+    """The resolution asked for, or a fortieth of the tooth pitch or of the edge's width [mm]."""
+    volume = math.pi * blank.radius**2 * blank.length_mm
+    usual = (volume / PLACES) ** (1.0 / 3.0)
+    if resolution is None:
+        wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c, _ in tools]
+        return max(min([blank.radius, *wide]) / 40.0, usual)
+    if not (math.isfinite(resolution) and resolution > 0):
+        raise InputError(f"a resolution of {resolution:g} mm", remedy="valid: above 0, for example 0.1")
+    if resolution < usual / 2.0:
+        raise InputError(
+            f"chips on rings {resolution:g} mm apart would need more memory than allowed",
+            remedy=f"valid: {math.ceil(usual * 500.0) / 1e3:g} or more",
+        )
+    return resolution
+
+
+def _shares(sweep: Sweep, rings: Rings, found: Intervals, step: float) -> _Shares:
+    """What of the intervals was still there: on each ring the later ones are painted over by the earlier."""
+    order = np.lexsort((-pass_order(sweep, found.bite), found.ring))
+    ring = found.ring[order]
+    bounds = np.concatenate([[0], np.flatnonzero(np.diff(ring)) + 1, [len(ring)]])
+    owners: list[Ints] = []
+    starts: list[Floats] = []
+    ends: list[Floats] = []
+    for first, last in pairwise(bounds):
+        own = order[first:last]
+        owner, edges = _painted(own, found.start[own], found.end[own])
+        change = np.flatnonzero(np.diff(owner, prepend=-2, append=-2))
+        kept = owner[change[:-1]] >= 0
+        owners.append(owner[change[:-1]][kept])
+        starts.append(edges[change[:-1]][kept])
+        ends.append(edges[change[1:]][kept])
+    none = np.zeros(0)
+    owner = np.concatenate([none.astype(np.int64), *owners])
+    start, end = np.concatenate([none, *starts]), np.concatenate([none, *ends])
+    # long ones in parts, so that their feet lie close along the edge
+    radius = rings.radius[found.ring[owner] // len(rings.height)]
+    parts = np.maximum(np.ceil((end - start) * radius / (2.0 * step)).astype(np.int64), 1)
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    wide = np.repeat((end - start) / parts, parts)
+    owner, start = np.repeat(owner, parts), np.repeat(start, parts) + number * wide
+    ring, bite = found.ring[owner], found.bite[owner]
+    met = [sweep.evaluate(rings.points(ring, start + share * wide), bite) for share in (0.0, 0.5, 1.0)]
+    height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
+    foot, slope = _foot(sweep, met[1], bite)
+    return _Shares(
+        bite,
+        rings.weight.reshape(-1)[ring] * wide,
+        height,
+        found.instant[owner],
+        foot,
+        slope,
+    )
+
+
+def _painted(own: Ints, start: Floats, end: Floats) -> tuple[Ints, Floats]:
+    """Which interval each stretch between the edges of all of them belongs to: the last that covers it.
+
+    Returns the owners (e − 1,), −1 where there is none, and the edges (e,) from 0 to a full turn.
+    """
+    full = 2.0 * math.pi
+    # an interval that begins before 0 goes on before the end of the turn
+    before, after = start < 0, end > full
+    own = np.concatenate([own, own[before], own[after]])
+    rank = np.concatenate([np.arange(len(start)), np.flatnonzero(before), np.flatnonzero(after)])
+    low = np.concatenate([np.maximum(start, 0.0), start[before] + full, np.zeros(after.sum())])
+    high = np.concatenate([np.minimum(end, full), np.full(before.sum(), full), end[after] - full])
+    edges = np.unique(np.concatenate([[0.0, full], low, high]))
+    order = np.argsort(rank, kind="stable")
+    owner = np.full(len(edges) - 1, -1, dtype=np.int64)
+    rows = zip(
+        np.searchsorted(edges, low)[order], np.searchsorted(edges, high)[order], own[order], strict=True
+    )
+    for a, b, who in rows:
+        owner[a:b] = who
+    return owner, edges
+
+
+def _of_stretch(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
+    """The stretch of each bite (n,), and its number within it."""
+    first = np.cumsum([0, *(field.count for field in sweep.fields)])
+    stretch = np.searchsorted(first[1:], bite, side="right")
+    return stretch, bite - first[stretch]
+
+
+def _foot(sweep: Sweep, meeting: Meeting, bite: Ints) -> tuple[Floats, Floats]:
+    """The points (n, 2) of the edge that are nearest to places above it, and `_Shares.slope` there."""
+    stretch, own = _of_stretch(sweep, bite)
+    foot, slope = np.zeros((len(bite), 2)), np.ones(len(bite))
+    for n, field in enumerate(sweep.fields):
+        here = np.flatnonzero(stretch == n)
+        s, rho = meeting.s[here], meeting.rho[here]
+        depth, by_s, by_rho = field.outline(own[here], s, rho)
+        foot[here] = np.column_stack([s - depth * by_s, rho - depth * by_rho])
+        slope[here] = 1.0 / np.maximum(np.abs(by_s) + np.abs(by_rho), 1e-12)
+    return foot, slope
+
+
+def _summed(
+    sweep: Sweep, tools: tuple[tuple[Cutter, CutterMotion], ...], shares: list[_Shares], step: float
+) -> Chips:
+    """Shares of each tooth's pass together, in the order of time."""
+    none = np.zeros(0)
+    bite = np.concatenate([none.astype(np.int64), *(s.bite for s in shares)])
+    volume, instant, slope = (
+        np.concatenate([none, *(getattr(s, name) for s in shares)]) for name in ("volume", "instant", "slope")
+    )
+    height = np.concatenate([np.zeros((0, 3)), *(s.height for s in shares)])
+    foot = np.concatenate([np.zeros((0, 2)), *(s.foot for s in shares)])
+    stretch, own = _of_stretch(sweep, bite)
+    turn, tooth, time = np.zeros_like(own), np.zeros_like(own), np.zeros(len(own))
+    for n, (field, (_, motion)) in enumerate(zip(sweep.fields, tools, strict=True)):
+        here = np.flatnonzero(stretch == n)
+        turn[here], number = np.divmod(own[here], field.bites)
+        tooth[here] = field.tooth[number]
+        time[here] = np.interp(instant[here], np.arange(len(motion.time_s)), motion.time_s)
+    kinds, chip = np.unique(np.column_stack([stretch, turn, tooth]), axis=0, return_inverse=True)
+    chip = chip.reshape(-1)
+    n = len(kinds)
+    total, mean = np.zeros(n), np.zeros(n)
+    np.add.at(total, chip, volume)
+    np.add.at(mean, chip, volume * (height @ SIMPSON))
+    largest, begin = np.zeros(n), np.full(n, np.inf)
+    np.maximum.at(largest, chip, height.max(axis=1))
+    np.minimum.at(begin, chip, time)
+    side = 2.0 * step
+    _, one = np.unique(
+        np.column_stack([chip, np.floor(foot / side).astype(np.int64)]), axis=0, return_index=True
+    )
+    width = np.zeros(n)
+    np.add.at(width, chip[one], side * slope[one])
+    order = np.lexsort((kinds[:, 2], kinds[:, 1], begin))
+    return Chips(
+        time_s=begin[order],
+        stretch=kinds[order, 0],
+        turn=kinds[order, 1],
+        tooth=kinds[order, 2],
+        volume_mm3=total[order],
+        thickness_max_mm=largest[order],
+        thickness_mean_mm=2.0 * (mean / np.maximum(total, 1e-300))[order],
+        width_mm=width[order],
+        resolution_mm=step,
+    )

@@ -1,0 +1,87 @@
+"""The grid of a cut, and what it will need, before any work is done."""
+
+import math
+from collections.abc import Iterable
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.blank import Blank
+from twin.cutting.grid import Grid, grid_around
+from twin.errors import InputError
+
+CELLS = 150_000
+"""Surface cells aimed at where no cell size is asked for."""
+ALLOWED = 2 << 30
+"""[bytes] of memory that a cut may take"""
+BASE = 150e6
+"""[bytes] that every cut takes"""
+PER_NODE = 12
+"""[bytes] of a grid node: its depth, and half as much again while it is made"""
+PER_CELL = 2100
+"""[bytes] of a surface cell, as measured on gears: mostly the tangents of the bites around it"""
+LEAST = 1e-6
+"""[mm] below which a cell is hopeless, whatever its size"""
+CORE = 0.02
+"""Share of the blank's radius that the grid leaves out around the axis."""
+
+
+def plan_grid(
+    blank: Blank, cutters: Iterable[Cutter], *, closest: float, cell_mm: float | None = None
+) -> Grid:
+    """The grid for a cut whose edges come as near as `closest` [mm] to the work axis.
+
+    `cell_mm` is its cell across the surface (twice that along z); left out, it follows from the teeth and the
+    size of the blank. Raises InputError for a cell that is none, or one that would need more memory than
+    ALLOWED, with the estimate.
+    """
+    if cell_mm is not None and not (math.isfinite(cell_mm) and cell_mm > 0):
+        raise InputError(f"a cell of {cell_mm:g} mm", remedy="valid: above 0, for example 0.1")
+    cell = _cell(blank, cutters) if cell_mm is None else cell_mm
+    lowest = max(CORE * blank.radius, 0.5 * blank.bore_mm, closest)
+    low = max(lowest - 2.5 * cell, 0.5 * CORE * blank.radius)
+    if low >= blank.radius:
+        low = max(blank.radius - 3 * cell, 0.5 * blank.radius)
+    needed = _memory(blank, low, cell)
+    if needed > ALLOWED:
+        coarser = max(cell, LEAST)
+        while _memory(blank, low, coarser) > ALLOWED:
+            coarser *= 1.05
+        raise InputError(
+            f"cells of {cell:g} mm would need about {needed / 2**30:.1f} GiB of memory, "
+            f"{ALLOWED / 2**30:g} are allowed",
+            remedy=f"valid: --cell-mm {math.ceil(coarser * 1e3) / 1e3:g} or more",
+        )
+    return grid_around(
+        r_low=low,
+        r_high=blank.radius,
+        z_low=blank.z_range[0],
+        z_high=blank.z_range[1],
+        cell=(cell, cell, 2.0 * cell),
+    )
+
+
+def _memory(blank: Blank, low: float, cell: float) -> float:
+    """Estimate [bytes], in floating point: no cell is too small for it."""
+    cell = max(cell, LEAST)
+    around = 2.0 * math.pi * blank.radius / cell
+    nodes = (blank.radius - low + 3.0 * cell) / cell * around * (blank.length_mm + 8.0 * cell) / (2.0 * cell)
+    return BASE + PER_NODE * nodes + PER_CELL * _surface(blank) / (2.0 * cell * cell)
+
+
+def _surface(blank: Blank) -> float:
+    """Area of the cut surface [mm²]: a toothed blank has about twice that of its cylinder."""
+    return 2.0 * math.pi * blank.diameter_mm * (blank.length_mm + blank.radius * 0.1)
+
+
+def _cell(blank: Blank, cutters: Iterable[Cutter]) -> float:
+    """Cell size [mm]: what shows the cutters' teeth, or what keeps to CELLS on a toothed blank."""
+    fine = min(_detail(cutter, blank) for cutter in cutters)
+    return max(fine, math.sqrt(_surface(blank) / (2.0 * CELLS)))
+
+
+def _detail(cutter: Cutter, blank: Blank) -> float:
+    """A sixtieth of the tooth pitch; a thirtieth of the gap that a wheel cuts [mm]."""
+    if math.isfinite(cutter.profile.pitch):
+        return cutter.profile.pitch / 60.0
+    if cutter.revolved:
+        return min(cutter.profile.half_width / 15.0, blank.radius / 120.0)
+    return blank.radius / 120.0

@@ -1,0 +1,235 @@
+"""Rings about the work axis, and the intervals of angle that each bite removes of them."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutting.blank import Blank
+from twin.cutting.grid import Grid, cartesian
+from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join
+from twin.cutting.sweep import Sweep
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+COARSEST = 16
+"""Cells along the edge of the blocks that the search begins with, and along z of a slab."""
+FINEST = 2
+ROUNDS = 12
+CLOSE = 1e-5
+"""[mm] of depth at which the end of an interval counts as found"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rings:
+    """Rings through the middles of the cells (r, z) of a grid, with a place at each of its angles."""
+
+    grid: Grid
+    weight: Floats
+    """(nr, nz) area of the blank's section that each ring stands for, times its radius [mm³/rad]"""
+
+    @classmethod
+    def of(cls, blank: Blank, step: float) -> "Rings":
+        """Rings that are about `step` apart [mm]."""
+        low = blank.bore_mm / 2.0
+        nr = max(1, math.ceil((blank.radius - low) / step))
+        nz = max(1, math.ceil(blank.length_mm / step))
+        sectors = COARSEST * max(6, math.ceil(2.0 * math.pi * blank.radius / step / COARSEST))
+        r = np.linspace(low, blank.radius, nr + 1)
+        z = np.linspace(*blank.z_range, nz + 1)
+        outer = blank.outer_radius(0.5 * (z[1:] + z[:-1]))
+        # the share of each cell that is inside the blank at the middle of its height
+        inside = np.clip(outer - r[:-1, None], 0.0, np.diff(r)[:, None])
+        middle = 0.5 * (r[1:] + r[:-1])
+        return cls(grid=Grid(r=r, sectors=sectors, z=z), weight=middle[:, None] * inside * np.diff(z))
+
+    @property
+    def radius(self) -> Floats:
+        """(nr,) of the rings [mm]."""
+        return 0.5 * (self.grid.r[1:] + self.grid.r[:-1])
+
+    @property
+    def height(self) -> Floats:
+        """(nz,) z of the rings [mm]."""
+        return 0.5 * (self.grid.z[1:] + self.grid.z[:-1])
+
+    def points(self, ring: Ints, angle: Floats) -> Floats:
+        """(n, 3) places on rings, numbered i nz + k."""
+        i, k = np.divmod(ring, len(self.height))
+        return cartesian(self.radius[i], angle, self.height[k])
+
+    def slabs(self) -> Iterator[Ints]:
+        """Low corners (n, 3) of the coarsest blocks, slab after slab along z."""
+        nr, nt, nz = self.grid.cells
+        across = np.stack(
+            np.meshgrid(np.arange(0, nr, COARSEST), np.arange(0, nt, COARSEST), indexing="ij"), axis=-1
+        ).reshape(-1, 2)
+        for k in range(0, nz, COARSEST):
+            yield np.column_stack([across, np.full(len(across), k)])
+
+
+@dataclass(frozen=True, slots=True)
+class Intervals:
+    """Intervals of angle on rings, each removed by one bite."""
+
+    ring: Ints
+    """(n,)"""
+    start: Floats
+    """(n,) [rad]; an interval may begin below 0"""
+    end: Floats
+    bite: Ints
+    instant: Floats
+    """(n,) sample of the motion at which the bite passes"""
+
+
+def intervals(sweep: Sweep, rings: Rings, low: Ints) -> Intervals:
+    """Everything that any bite removes of the rings in the blocks `low` (n, 3)."""
+    ring, place, bite, instant = _removed(sweep, rings, *_touched(sweep, rings.grid, low))
+    order = np.lexsort((place, bite, ring))
+    ring, place, bite, instant = ring[order], place[order], bite[order], instant[order]
+    sectors = rings.grid.sectors
+    same = (np.diff(ring) == 0) & (np.diff(bite) == 0)
+    begins = np.concatenate([[True], ~(same & (np.diff(place) == 1))]) if len(ring) else np.zeros(0, bool)
+    first = np.flatnonzero(begins)
+    last = np.append(first[1:], len(ring))[: len(first)] - 1
+    # a run that ends at the last place goes on in the one that begins at the first
+    key = ring[first] * np.int64(sum(field.count for field in sweep.fields) + 1) + bite[first]
+    tail = np.flatnonzero((place[last] == sectors - 1) & (place[first] > 0))
+    heads = np.flatnonzero(place[first] == 0)
+    at = np.minimum(np.searchsorted(key[heads], key[tail]), max(len(heads) - 1, 0))
+    joins = key[heads[at]] == key[tail] if len(heads) else np.zeros(len(tail), dtype=bool)
+    begin = place[first].copy()
+    begin[heads[at[joins]]] = begin[tail[joins]] - sectors
+    gone = np.zeros(len(first), dtype=bool)
+    gone[tail[joins]] = True
+    middle = (first + last) // 2
+    rows = np.flatnonzero(~gone)
+    first, last, middle = first[rows], last[rows], middle[rows]
+    start = _ends(sweep, rings, ring[first], bite[first], (begin[rows], -1))
+    end = _ends(sweep, rings, ring[first], bite[first], (place[last], 1))
+    return Intervals(ring[first], start, end, bite[first], instant[middle])
+
+
+def pass_order(sweep: Sweep, bite: Ints) -> Ints:
+    """Number (n,) of each bite's pass in the order of time: at any one place passes come in this order."""
+    order = np.zeros(len(bite), dtype=np.int64)
+    first = passed = 0
+    for field in sweep.fields:
+        here = (bite >= first) & (bite < first + field.count)
+        order[here] = passed + (bite[here] - first) // field.bites
+        first, passed = first + field.count, passed + field.passes.count
+    return order
+
+
+def _touched(sweep: Sweep, grid: Grid, low: Ints) -> tuple[Ints, Candidates]:
+    """The finest blocks that some bite may touch, and those bites."""
+    size = COARSEST
+    middle, radius = _balls(grid, low, size)
+    lists = sweep.near(middle, radius)
+    while True:
+        some = np.flatnonzero(np.diff(lists.start))
+        low, lists = low[some], lists.of(some)
+        if size == FINEST:
+            return low, lists
+        size //= 2
+        steps = size * np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
+        parent = np.repeat(np.arange(len(low)), 8)
+        low = (low[:, None] + steps).reshape(-1, 3)
+        inside = (low[:, 0] < grid.cells[0]) & (low[:, 2] < grid.cells[2])
+        low = low[inside]
+        lists = _culled(sweep, *_balls(grid, low, size), lists.of(parent[inside]))
+
+
+def _balls(grid: Grid, low: Ints, size: int) -> tuple[Floats, Floats]:
+    """Middles (n, 3) of blocks and the distance (n,) of their farthest corners."""
+    middle, corners = grid.hulls(low, size)
+    return middle, np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
+
+
+def _culled(sweep: Sweep, middle: Floats, radius: Floats, lists: Candidates) -> Candidates:
+    """The lists without the bites that cannot touch the balls, or that come when all of a ball is gone."""
+
+    def work(part: slice) -> Candidates:
+        own = lists.of(np.arange(part.start, part.stop))
+        owner = own.owner()
+        meeting = sweep.evaluate(middle[owner + part.start], own.bites)
+        change, _ = sweep.bound(meeting, own.bites, radius[owner + part.start])
+        order = pass_order(sweep, own.bites)
+        gone = np.full(own.count, np.iinfo(np.int64).max)
+        whole = meeting.depth - change > 0
+        np.minimum.at(gone, owner[whole], order[whole])
+        return own.where((meeting.depth + change > 0) & (order <= gone[owner]))
+
+    return join(in_parallel(work, batches(lists.start, LISTED)))
+
+
+def _removed(sweep: Sweep, rings: Rings, low: Ints, lists: Candidates) -> tuple[Ints, Ints, Ints, Floats]:
+    """Ring, place, bite and instant (n,) of every place of the rings that a bite removes."""
+    nr, sectors, nz = rings.grid.cells
+    found: list[tuple[Ints, Ints, Ints, Floats]] = []
+    for di in range(FINEST):
+        for dj in range(FINEST):
+            for dk in range(FINEST):
+                i, j, k = (low + np.array([di, dj, dk])).T
+                inside = np.flatnonzero((i < nr) & (k < nz))
+                inside = inside[rings.weight[i[inside], k[inside]] > 0]
+                ring, place, own = i[inside] * nz + k[inside], j[inside] % sectors, lists.of(inside)
+                found += _hit(sweep, rings, ring, place, own)
+    none = np.zeros(0, dtype=np.int64)
+    ring, place, bite, instant = zip((none, none, none, np.zeros(0)), *found, strict=True)
+    return np.concatenate(ring), np.concatenate(place), np.concatenate(bite), np.concatenate(instant)
+
+
+def _hit(
+    sweep: Sweep, rings: Rings, ring: Ints, place: Ints, lists: Candidates
+) -> list[tuple[Ints, Ints, Ints, Floats]]:
+    point = rings.points(ring, rings.grid.angle(place))
+
+    def work(part: slice) -> tuple[Ints, Ints, Ints, Floats]:
+        own = lists.of(np.arange(part.start, part.stop))
+        owner = own.owner() + part.start
+        meeting = sweep.evaluate(point[owner], own.bites)
+        hit = np.flatnonzero(meeting.depth > 0)
+        return ring[owner[hit]], place[owner[hit]], own.bites[hit], meeting.instant[hit]
+
+    return in_parallel(work, batches(lists.start, LISTED))
+
+
+def _ends(sweep: Sweep, rings: Rings, ring: Ints, bite: Ints, place: tuple[Ints, int]) -> Floats:
+    """Angles (n,) at which the bites' depths cross zero, from removed places to the next, ±1 further on."""
+    begin = rings.grid.angle(place[0])
+    way = place[1] * 2.0 * math.pi / rings.grid.sectors
+
+    def work(part: slice) -> Floats:
+        return begin[part] + way * _crossing(sweep, rings, ring[part], bite[part], (begin[part], way))
+
+    return np.concatenate([np.zeros(0), *in_parallel(work, batches(np.arange(len(ring) + 1)))])
+
+
+def _crossing(sweep: Sweep, rings: Rings, ring: Ints, bite: Ints, span: tuple[Floats, float]) -> Floats:
+    """Shares (n,) of the way, by false position kept between a removed and a kept place."""
+    begin, way = span
+    inner, outer, at = np.zeros(len(ring)), np.ones(len(ring)), np.zeros(len(ring))
+
+    def depth(rows: Ints, share: Floats) -> Floats:
+        return sweep.evaluate(rings.points(ring[rows], begin[rows] + share * way), bite[rows]).depth
+
+    rows = np.arange(len(ring))
+    value = np.stack([depth(rows, inner), np.minimum(depth(rows, outer), 0.0)])
+    for _ in range(ROUNDS):
+        here, there = value[:, rows]
+        new = inner[rows] + here / np.maximum(here - there, 1e-300) * (outer[rows] - inner[rows])
+        at[rows] = new
+        found = depth(rows, new)
+        removed = found > 0
+        inner[rows[removed]], value[0, rows[removed]] = new[removed], found[removed]
+        outer[rows[~removed]], value[1, rows[~removed]] = new[~removed], found[~removed]
+        value[1, rows[removed]] *= 0.5
+        value[0, rows[~removed]] *= 0.5
+        rows = rows[np.abs(found) > CLOSE]
+        if not len(rows):
+            break
+    return at

@@ -1,0 +1,131 @@
+"""Where the usable flank begins and ends: above fillet or undercut, below a tip chamfer or rounding.
+
+Flanks and reliefs are nearly involutes; a chamfer or a fillet leaves the involute steeply, so the usable
+flank is the stretch about its middle along which the deviation is not steep. A slight undercut is not steep,
+but at its corner material begins to lack against what the flank above goes on to.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.inspection.reading import Placed, read_flanks
+from twin.inspection.solid import Floats, Ints, Solid
+
+POINTS = 960
+"""at which the flank is looked at from root to tip"""
+BASE = 3
+"""points to both sides over which steepness is taken"""
+STEEP = 0.06
+"""deviation over roll length that is no flank's: three degrees and a half"""
+MIDDLE = 0.6
+"""from root to tip, this is always flank"""
+ALIKE = 0.05
+"""a tooth whose flank ends farther than this part of the flank from the usual end is a damaged tooth"""
+BODY = (0.35, 0.9)
+"""part of the flank, from its start to its end, that no undercut reaches"""
+LACKING = (1e-3, 5.0)
+"""an undercut is deeper at the start than this [mm] and than so many times the band of the flank above"""
+CORNER = (1e-4, 1.5)
+"""and begins where this [mm] or so many times that band lacks"""
+UNDERCUT = 0.01
+"""an undercut lacks more than this against the roll length down to the start: half a degree"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Usable:
+    """The usable flank in roll lengths [mm]."""
+
+    start: float
+    end: float
+    undercut: bool
+    """below the start material is lacking, not in excess"""
+    chamfered: bool
+    """it ends below the tip diameter"""
+
+
+def steep_ends(roll: Floats, deviation: Floats) -> tuple[Ints, Ints]:
+    """Return first and last index (n,) of the stretch about the middle that is flank.
+
+    Args:
+        roll: (m,) roll lengths, evenly spaced [mm].
+        deviation: (n, m) of as many flanks [mm].
+
+    """
+    points = len(roll)
+    middle = round(MIDDLE * (points - 1))
+    rise = deviation[:, 2 * BASE :] - deviation[:, : -2 * BASE]
+    flat = np.abs(rise) <= STEEP * 2 * BASE * (roll[1] - roll[0])  # NaN is steep
+    steep = ~np.pad(flat, ((0, 0), (BASE, BASE)), mode="edge")
+    below, above = steep[:, :middle][:, ::-1], steep[:, middle:]
+    # steepness shows BASE points before the corner that makes it
+    first = np.where(below.any(axis=1), middle - below.argmax(axis=1), 0)
+    last = np.where(above.any(axis=1), middle + above.argmax(axis=1) + BASE - 2, points - 1)
+    return first, np.minimum(last, points - 1)
+
+
+def undercut_corner(roll: Floats, deviation: Floats, *, start: float, end: float) -> float | None:
+    """Return the roll length [mm] at which an undercut meets the flank, or None.
+
+    Args:
+        roll: (m,) roll lengths [mm].
+        deviation: (m,) of the usual flank [mm].
+        start: roll length at which the flank should begin [mm].
+        end: roll length at which it ends [mm].
+
+    """
+    there = np.isfinite(deviation)
+    low, high = (start + part * (end - start) for part in BODY)
+    body = there & (roll >= low) & (roll <= high)
+    foot = there & (roll >= start) & (roll < low)
+    if np.count_nonzero(body) < 10 or not foot.any():
+        return None
+    bend = np.polynomial.Polynomial.fit(roll[body], deviation[body], 2)
+    band = float(np.ptp(deviation[body] - bend(roll[body])))
+    lacking = bend(roll[foot]) - deviation[foot]
+    beyond = np.flatnonzero(lacking > max(CORNER[0], CORNER[1] * band))
+    if len(beyond) == 0 or lacking[0] < max(LACKING[0], LACKING[1] * band):
+        return None
+    corner = float(roll[foot][beyond[-1]])
+    return corner if lacking[0] > UNDERCUT * (corner - start) else None
+
+
+def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diameter: float) -> Usable:
+    """Find the usable flank of all teeth in the measuring plane.
+
+    `tip_diameter` [mm] is where the shortest tooth ends.
+    """
+    gear = placed.gear
+    form, tip = (float(gear.roll_length(d)) for d in (gear.form_diameter, tip_diameter))
+    lowest = max(float(gear.roll_length(2 * root_radius)), 0.02 * gear.module)
+    whole = Usable(start=form, end=tip, undercut=gear.undercut, chamfered=False)
+    if tip - lowest < 0.1 * gear.module:
+        return whole
+    roll = np.linspace(lowest, lowest + 0.998 * (tip - lowest), POINTS)
+    read = read_flanks(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
+    flanks = np.concatenate(read.deviation[:, 0].transpose(0, 2, 1)) / 1000
+    flanks = flanks[np.isfinite(flanks).sum(axis=1) > POINTS / 2]
+    if len(flanks) == 0:
+        return whole
+    first, last = steep_ends(roll, flanks)
+    near = ALIKE * POINTS
+    start_at = int(first[np.abs(first - np.median(first)) <= near].max(initial=0))
+    end_at = int(last[np.abs(last - np.median(last)) <= near].min(initial=POINTS - 1))
+    step = roll[1] - roll[0]
+    start, end, undercut = form, tip, gear.undercut
+    if end_at < POINTS - 1 - BASE:
+        end = float(roll[end_at])
+    if start_at > 0 and roll[start_at] > form + (2 * BASE + 1) * step:
+        start = float(roll[min(start_at + 2 * BASE, POINTS - 1)])
+        below = slice(max(start_at - 4 * BASE, 0), max(start_at - BASE, 1))
+        undercut = bool(np.nansum(flanks[:, below] - flanks[:, [start_at + BASE]]) < 0)
+    middle = flanks[:, round(MIDDLE * POINTS), None]
+    corner = undercut_corner(roll, _median(flanks - middle), start=start, end=end)
+    if corner is not None:
+        start, undercut = corner + step, True
+    return Usable(start=start, end=end, undercut=undercut, chamfered=end < tip)
+
+
+def _median(flanks: Floats) -> Floats:
+    """Return the median (m,) of flanks (n, m) that may have holes; NaN where more than half have."""
+    return np.sort(flanks, axis=0)[len(flanks) // 2]  # NaN sorts last
