@@ -4,7 +4,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 DEV := .venv/.dev
 
-.PHONY: demo test install check bench clean
+.PHONY: demo test install check bench fuzz clean
 
 demo: $(READY)
 	$(BIN)/hobtwin run scenes/spur_m2_z20
@@ -31,6 +31,9 @@ $(READY): pyproject.toml
 $(DEV): $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
 	@touch $@
+
+fuzz: $(DEV)
+	$(BIN)/python tests/fuzz/fuzzing.py $(or $(N),2000)
 
 clean:
 	rm -rf .venv out build *.egg-info

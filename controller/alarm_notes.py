@@ -93,7 +93,6 @@ SV0410 | Fanuc alarms | | a standing axis is pushed off its position
 SV0411 | Fanuc alarms | | a moving axis lags too far behind
 HT9000 | §1 | | the file is no text in UTF-8 or GBK
 HT9001 | §1 | | the file holds no block
-HT9002 | §1, G codes | | a real code that the twin does not run yet
 HT9003 | §1, G codes | | a real code of the control that the twin never runs, rather than wrongly
 HT9004 | §1 | | a comment that is not closed in its line
 HT9005 | §0, 4 | | parameters that cannot hold together

@@ -126,7 +126,6 @@ SV0410 | EXCESS ERROR (STOP) | a load that the drives can hold
 SV0411 | EXCESS ERROR (MOVING) | a motion and a load that the drives can follow
 HT9000 | PROGRAM CANNOT BE READ | a text file in UTF-8 or GBK
 HT9001 | EMPTY PROGRAM | at least one block
-HT9002 | NOT SUPPORTED YET | another way to say it
 HT9003 | NOT SUPPORTED BY THE TWIN | another way to say it
 HT9004 | COMMENT NOT CLOSED | ( and ) in the same line
 HT9005 | PARAMETERS CONTRADICT EACH OTHER | parameters that agree

@@ -18,7 +18,7 @@ BY_ITSELF = frozenset(
     (
         *("PS0003", "PS0004", "PS0005", "PS0007", "PS0010", "PS0022", "PS0030", "PS0218", "PS0219"),
         *("PS1593", "PS1594", "PS5007", "PS5016", "PS5074"),
-        *("HT9002", "HT9003", "HT9004", "HT9009", "HT9010", "HT9014"),
+        *("HT9003", "HT9004", "HT9009", "HT9010", "HT9014"),
     )
 )
 """alarms that no state of the machine can excuse"""

@@ -4,6 +4,7 @@ import json
 import math
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,7 +25,7 @@ from twin.machine import IdealMachine, MujocoMachine
 from twin.outcome import Options, Outcome
 from twin.output.arrays import save_arrays
 from twin.output.folder import require_replaceable, result_folder
-from twin.output.meshes import write_meshes
+from twin.output.meshes import write_3mf, write_glb, write_stl
 from twin.output.provenance import provenance
 from twin.presets import cutters_of, settings_of
 from twin.progress import Reporter, Silent
@@ -122,9 +123,17 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
 
 def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
     remains, session, job = outcome.cut.remains, outcome.session, outcome.job
-    with watch.measure("files"):
-        write_meshes(folder, remains.vertices, remains.faces)
-        session.recording.save(folder / "recording.npz")
+    with watch.measure("files"), ThreadPoolExecutor() as pool:
+        mesh = remains.vertices, remains.faces
+        # compression leaves the interpreter free
+        written = [
+            pool.submit(session.recording.save, folder / "recording.npz"),
+            pool.submit(write_3mf, folder / "part.3mf", *mesh),
+            pool.submit(write_stl, folder / "part.stl", *mesh),
+            pool.submit(write_glb, folder / "part.glb", *mesh),
+        ]
+        for one in written:
+            one.result()
         if outcome.chips is not None:
             save_arrays(folder / "chips.npz", outcome.chips.columns())
         _json(folder / "inspection.json", to_json(outcome.inspection))

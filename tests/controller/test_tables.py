@@ -42,7 +42,6 @@ def test_power_on_state_has_one_code_of_every_modal_group() -> None:
     ("number", "kind"),
     [
         ("PS0005", AlarmClass.PROGRAM),
-        ("HT9002", AlarmClass.PROGRAM),
         ("OT0500", AlarmClass.OVERTRAVEL),
         ("SV0411", AlarmClass.SERVO),
         ("HT9013", AlarmClass.SERVO),

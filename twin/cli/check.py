@@ -28,10 +28,16 @@ def check_command(options: argparse.Namespace) -> ExitCode:
     if options.trace and options.format != "text":
         raise InputError(f"--trace with --format {options.format}", remedy="one of the two")
     target: Path = options.target
-    if target.suffix == ".toml" or (target / _JOB).is_file():
-        result = _check_job(options)
-    else:
-        result = _check_program(options)
+    of_job = target.suffix == ".toml" or (target / _JOB).is_file()
+    try:
+        result = _check_job(options) if of_job else _check_program(options)
+    except AlarmError as refused:
+        if options.format != "json" or refused.alarm.number != "HT9005":
+            raise
+        from twin.cli.check_json import refused_as_json  # noqa: PLC0415
+
+        print(refused_as_json(refused.alarm))
+        return ExitCode.FINDING
     if options.trace:
         _print_messages(result)
     elif options.format == "json":

@@ -20,6 +20,15 @@ def as_json_text(result: CheckResult) -> str:
     return "{\n" + ",\n".join(lines) + "\n}"
 
 
+def refused_as_json(alarm: Alarm) -> str:
+    """What there is to say where parameters contradict each other and nothing was run."""
+    empty: dict[str, object] = {"absolute": {}, "machine": {}}
+    return json.dumps(
+        {"alarms": [as_json(alarm)], "warnings": [], "cycle_time_s": 0.0, "final": empty, "extents": {}},
+        ensure_ascii=False,
+    )
+
+
 def _object(result: CheckResult) -> dict[str, object]:
     run = result.run
     return {

@@ -64,34 +64,3 @@ def _polygon(options: argparse.Namespace) -> Draft:
             feed=options.feed,
         )
     )
-
-
-def add_new(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    """The arguments of `new`."""
-    new = commands.add_parser("new", help="write a job and a program to begin with")
-    parts = new.add_subparsers(title="parts", dest="part", required=True, metavar="PART")
-    gear = parts.add_parser("gear", help="a spur or helical gear, hobbed in one pass")
-    gear.add_argument("--module", type=float, required=True, metavar="MM", help="normal module")
-    gear.add_argument("--teeth", type=int, required=True)
-    gear.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="+ right-hand")
-    gear.add_argument("--width", type=float, metavar="MM", help="face width (default: ten modules)")
-    gear.add_argument("--profile-shift", type=float, default=0.0, metavar="X")
-    gear.add_argument("--pressure-angle", type=float, default=20.0, metavar="DEG")
-    gear.add_argument("--bore", type=float, metavar="MM", help="0 = solid (default: chosen)")
-    gear.add_argument("--class", type=int, default=8, dest="accuracy_class", metavar="A", help="ISO 1328-1")
-    gear.add_argument("--hob-diameter", type=float, metavar="MM", help="(default: by module)")
-    gear.add_argument("--gashes", type=int)
-    gear.add_argument("--starts", type=int, default=1)
-    gear.add_argument("--cutting-speed", type=float, default=60.0, metavar="M/MIN")
-    gear.add_argument("--feed", type=float, metavar="MM", help="per turn of the work (default: by class)")
-    polygon = parts.add_parser("polygon", help="flats turned with a head of inserts")
-    polygon.add_argument("--sides", type=int, required=True)
-    polygon.add_argument("--across-flats", type=float, required=True, metavar="MM")
-    polygon.add_argument("--length", type=float, default=10.0, metavar="MM")
-    polygon.add_argument("--inserts", type=int, help="(default: half the sides)")
-    polygon.add_argument("--tip-radius", type=float, default=40.0, metavar="MM")
-    polygon.add_argument("--speed", type=int, default=300, metavar="RPM", help="of the work")
-    polygon.add_argument("--feed", type=float, default=0.5, metavar="MM", help="per turn of the work")
-    for part in (gear, polygon):
-        part.add_argument("--out", type=Path, required=True, metavar="DIR", help="new or empty folder")
-    return new

@@ -1,8 +1,11 @@
 """The part as STL (binary, mm), GLB (metres, as glTF demands) and 3MF (mm)."""
 
 import zipfile
+from collections.abc import Iterable
+from itertools import chain, repeat
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
@@ -26,18 +29,20 @@ _RELATIONS = (
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
-def write_meshes(folder: Path, vertices: Floats, faces: Ints) -> None:
-    """Write part.stl, part.glb and part.3mf; vertices (n, 3) in mm."""
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    mesh.export(folder / "part.stl")
-    trimesh.Trimesh(vertices / 1000.0, faces, process=False).export(folder / "part.glb")
-    _write_3mf(folder / "part.3mf", vertices, faces)
+def write_stl(path: Path, vertices: Floats, faces: Ints) -> None:
+    """Binary STL; vertices (n, 3) in mm."""
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
 
 
-def _write_3mf(path: Path, vertices: Floats, faces: Ints) -> None:
-    """3MF core specification 1.3: one object in millimetres; to the nanometre."""
-    points = "".join(f'<vertex x="{x:.6f}" y="{y:.6f}" z="{z:.6f}"/>' for x, y, z in vertices.tolist())
-    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces.tolist())
+def write_glb(path: Path, vertices: Floats, faces: Ints) -> None:
+    """GLB in metres, as glTF demands; vertices (n, 3) in mm."""
+    trimesh.Trimesh(vertices / 1000.0, faces, process=False).export(path)
+
+
+def write_3mf(path: Path, vertices: Floats, faces: Ints) -> None:
+    """3MF core specification 1.3: one object in millimetres, to the nanometre; vertices (n, 3) in mm."""
+    points = _elements("vertex", ("x", "y", "z"), np.round(vertices, 6) + 0.0)
+    triangles = _elements("triangle", ("v1", "v2", "v3"), faces)
     model = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<model unit="millimeter" xml:lang="en-US" '
@@ -55,3 +60,12 @@ def _write_3mf(path: Path, vertices: Floats, faces: Ints) -> None:
             entry = zipfile.ZipInfo(name, _EPOCH)
             entry.compress_type = zipfile.ZIP_DEFLATED
             package.writestr(entry, text)
+
+
+def _elements(name: str, attributes: tuple[str, ...], rows: Floats | Ints) -> str:
+    """One empty XML element a row (n, k), a column an attribute."""
+    texts = [msgspec.json.encode(column.tolist())[1:-1].decode().split(",") for column in rows.T]
+    pieces: list[Iterable[str]] = []
+    for attribute, column in zip(attributes, texts, strict=True):
+        pieces += [repeat(f'<{name} {attribute}="' if not pieces else f'" {attribute}="'), column]
+    return "".join(chain.from_iterable(zip(*pieces, repeat('"/>'), strict=False)))

@@ -299,10 +299,21 @@ def test_a_bare_program_loads_nothing_heavy():
     """Start-up under 0.3 s: the controller alone, no physics, no job reader."""
     modules = _loaded("tests/programs/ok/hobbing_original.nc", "--format", "json")
     assert "controller.dry_run" in modules
-    assert not modules & {*HEAVY, "msgspec", "twin.job", "twin.presets", "twin.advice.adviser"}
+    assert not modules & {*HEAVY, "numpy", "msgspec", "twin.job", "twin.presets", "twin.advice.adviser"}
 
 
 def test_a_job_loads_neither_physics_nor_meshes():
     modules = _loaded("scenes/spur_m2_z20")
     assert "twin.advice.adviser" in modules
     assert not modules & set(HEAVY)
+
+
+def test_contradicting_parameters_are_an_alarm_in_json_too(check):
+    """Rulings, section 4: 8211 = 0 contradicts itself in the original."""
+    code, out, err = check(
+        SQUARE, "--setup", "tilted", "--parameter", "8200#0=1", "--parameter", "8211=0", "--format", "json"
+    )
+    found = json.loads(out)
+    assert (code, err) == (1, "")
+    assert [one["number"] for one in found["alarms"]] == ["HT9005"]
+    assert found["final"] == {"absolute": {}, "machine": {}}
