@@ -46,7 +46,7 @@ def _finish_block(draft: Draft, *, optional_stop: bool) -> None:
     if number == 0 or (number == 1 and optional_stop):
         draft.commands.append(ProgramStop(span=draft.block.span))
     elif number in (2, 30):
-        draft.refuse_in_sync(f"M{number:02d}")
+        draft.refuse_in_sync(f"M{number:02d}", draft.block.m_word)
         draft.commands.append(ProgramEnd())
         draft.go = draft.flow.finish
     elif number == 5:

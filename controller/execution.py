@@ -107,9 +107,11 @@ class Execution:
                 phase = yield from phase()
             except AlarmError as error:
                 yield from self._alarm(error.alarm)
+                self._warn_of_the_rest()
                 return
             except LeftStanding as left:
                 self._warn(Alarm(number="HT9130", found=str(left), span=self.motion.span))
+                self._warn_of_the_rest()
                 return
             except Reset:
                 phase = self._after_reset
@@ -192,10 +194,14 @@ class Execution:
             return self._program
         if overdue := self.motion.references.overdue(self.motion.span):
             self._warn(overdue)
+        self._warn_of_the_rest()
+        return None
+
+    def _warn_of_the_rest(self) -> None:
+        """Events that nothing more will let act: an operator's action is never ignored silently."""
         for event in self._agenda.left:
             when = f"line {event.line}" if event.line else f"{event.time_s:g} s"
             self._warn(Alarm(number="HT9137", found=f"{event} at {when}"))
-        return None
 
     def _after_reset(self) -> Steps["Phase | None"]:
         self._warn(Alarm(number="HT9134", found="RESET", span=self.motion.span))

@@ -103,7 +103,8 @@ class StrokeLimits:
             return alarm(crossing.number, found, span, valid=f"a way in the {back} direction")
         found += f"{'beyond' if crossing.foreseen else 'at'} its limit {crossing.bound * axis.factor:.3f} mm"
         if standing is not None:
-            found += f", standing at {standing[crossing.axis] * axis.factor:.3f} mm"
+            there = standing if crossing.frame is Frame.SLIDES else self._cartesian(standing)
+            found += f", standing at {there[crossing.axis] * axis.factor:.3f} mm"
         return alarm(crossing.number, found, span, valid=self._valid(crossing))
 
     def _valid(self, crossing: Crossing) -> str:

@@ -123,11 +123,12 @@ class ManualMotion(Turning):
             return
         axis = self.machine.letters.index(event.axis)
         gear = self.coupling.gear
-        if gear and axis == gear.master:
-            found = f"{event}, the master of {gear.kind.value},"
-            raise alarm(
-                _FORBIDDEN[gear.kind], found, self._span, valid="an axis out of the gear box, or its slave"
-            )
+        returns = event.action is OperatorAction.REFERENCE_RETURN
+        if gear and (axis == gear.master or (returns and axis == gear.slave)):
+            role = "master" if axis == gear.master else "slave"
+            found = f"{event}, the {role} of {gear.kind.value},"
+            valid = "an axis out of the gear box" + ("" if returns else ", or its slave")
+            raise alarm(_FORBIDDEN[gear.kind], found, self._span, valid=valid)
         if mirrored := self._mirrored() & self._slanted({axis: 1.0}).keys():
             names = ", ".join(f"MI{self.machine.letters[k]} = 1" for k in sorted(mirrored))
             self._warn(Alarm(number="HT9123", found=f"{event} with {names}", span=self._span))

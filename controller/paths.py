@@ -3,13 +3,17 @@
 import math
 from collections.abc import Mapping
 
+from controller.alarms import alarm
 from controller.axes import Axes
+from controller.gearbox import SyncKind
 from controller.inclined import InclinedPair
 from controller.path import NOTHING, AnyPath, ArcPath, StraightPath, Travel, arc_limits, straight_limits
 from controller.registers import shortest
 from controller.signals import AxisInput
+from controller.spindles import DEG_PER_S
 from controller.wave import Wave
 
+_OVER_SPEED = {SyncKind.HOBBING: "PS1596", SyncKind.POLYGON: "PS5018"}
 _REACHED = 1e-6
 """[mm | deg] within which a commanded end is reached"""
 
@@ -122,6 +126,7 @@ class Paths(Axes):
             machine = self._cartesian(slides)
         if self.timeline.epochs:
             top, rate = self._spare(slides, length, top, rate)
+            top = self._beside_sync(slides, length, top)
         base = self.timeline.own(self.time)
         travel = [0.0] * len(base)
         for k, d in slides.items():
@@ -200,6 +205,29 @@ class Paths(Axes):
             return top, rate
         slave = self.machine.axes[epoch.gear.slave]
         return min(top, slave.rapid * length / shift), min(rate, slave.acceleration * length / shift)
+
+    def _beside_sync(self, slides: Travel, length: float, top: float) -> float:
+        """Path speed that leaves the slave within its limit together with what the master makes it turn.
+
+        Raises PS1596, PS5018 where the master alone takes it there.
+        """
+        epoch = self.timeline.coupling
+        if epoch is None:
+            return top
+        gear = epoch.gear
+        shift = slides.get(gear.slave, 0.0) + sum(w * slides.get(k, 0.0) for k, w in epoch.weights.items())
+        master, slave = self.timeline.tracks[gear.master], self.machine.axes[gear.slave]
+        moments = (self.time, self.spindles.ready(gear.master, self.time))
+        turning = max(math.copysign(1.0, shift) * gear.ratio * master.speed(moment) for moment in moments)
+        if abs(shift) < NOTHING or turning <= 0.0:
+            return top
+        limit = slave.spindle_max * DEG_PER_S
+        spare = limit - turning
+        if spare < limit * NOTHING:
+            found = f"a motion of {slave.letter} beside {turning / DEG_PER_S:.0f} rpm in sync"
+            valid = f"S that leaves {slave.letter} below its {slave.spindle_max:.0f} rpm"
+            raise alarm(_OVER_SPEED[gear.kind], found, self._span, valid=valid)
+        return min(top, spare * length / abs(shift))
 
     def _rest(self, path: AnyPath, position: float) -> AnyPath | None:
         """What is left of a path behind a position, for the machine as it is now, parallel to the old one."""

@@ -19,7 +19,9 @@ _FILE_ENCODINGS = ("utf-8-sig", "gbk")
 _COMMENT = re.compile(r"\([^)]*\)")
 _BLANKS = r"(?:[ \t]|\([^)]*\))*"
 _O_NUMBER = re.compile(rf"{_BLANKS}%?{_BLANKS}[Oo]{_BLANKS}(\d{{1,8}})(?!\d)", re.ASCII)
-_N_NUMBER = re.compile(rf"{_BLANKS}(?:/\d?)?{_BLANKS}[Nn]{_BLANKS}(\d{{1,8}})(?!\d)", re.ASCII)
+_N_NUMBER = re.compile(
+    rf"(?:{_O_NUMBER.pattern})?{_BLANKS}(?:/\d?)?{_BLANKS}[Nn]{_BLANKS}(?P<label>\d{{1,8}})(?!\d)", re.ASCII
+)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f]")
 _LABEL_BITS = 32
 
@@ -99,7 +101,7 @@ class Program:
         """The sequence number that stands on line `index` or nearest above it, from `start` on."""
         for k in range(index, start - 1, -1):
             if found := _N_NUMBER.match(self.lines[k]):
-                return int(found.group(1))
+                return int(found["label"])
         return None
 
     def _index_labels(self, start: int) -> "array[int]":
@@ -107,7 +109,7 @@ class Program:
         labels = array("q")
         for index in range(start, self.end_of(start)):
             if found := _N_NUMBER.match(self.lines[index]):
-                labels.append(int(found.group(1)) << _LABEL_BITS | index)
+                labels.append(int(found["label"]) << _LABEL_BITS | index)
         return array("q", sorted(labels))
 
     def _fetch(self, other: "Program", number: int) -> None:

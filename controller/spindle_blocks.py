@@ -27,7 +27,7 @@ def interpret_spindle(draft: Draft) -> None:
         word = None
     if draft.modal.gear:
         if number in (3, 4, 19):
-            draft.refuse_in_sync(M_CODES[number].name)
+            draft.refuse_in_sync(M_CODES[number].name, draft.block.m_word)
         if word:
             sync_speed(draft, word)
         return

@@ -7,6 +7,7 @@ from controller.commands import Couple, SpindleSpeed, Uncouple
 from controller.draft import Draft
 from controller.gearbox import MM_PER_INCH, GearBox, SyncKind, helix_rate, helix_rate_inch, polygon_rate
 from controller.lexer import Word
+from controller.machine_data import INCREMENT_LETTER
 
 G80, G81, G50_2, G51_2 = 800, 810, 502, 512
 STEEP = 85.0
@@ -62,8 +63,9 @@ def _alone(draft: Draft, code: int, number: str, allowed: str = "") -> None:
     for address, word in draft.rest.items():
         if address not in allowed:
             raise draft.alarm(number, f"{word} in the block of {draft.code_word(code)}", word)
-    if draft.block.m_code:
-        raise draft.alarm(number, f"{draft.block.m_code.name} in the block of {draft.code_word(code)}")
+    if m_code := draft.block.m_code:
+        found = f"{m_code.name} in the block of {draft.code_word(code)}"
+        raise draft.alarm(number, found, draft.block.m_word)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +80,7 @@ class _Bounds:
         return self.low <= value <= self.high and (self.zero or value != 0)
 
     def __str__(self) -> str:
-        return f"{self.low:g} to {self.high:g}" + ("" if self.zero else " but 0")
+        return f"{self.low:.7g} to {self.high:.7g}" + ("" if self.zero else " but 0")
 
 
 _TEETH = _Bounds(low=1, high=1000)
@@ -233,7 +235,7 @@ def _engage(draft: Draft, command: Couple, word: Word | None) -> None:
             if motion.spindles.turning(column, motion.time):
                 raise draft.alarm("HT9008", f"{draft.letter(column)} turns out of sync", word)
             if column in motion.spindles.free and not (gear.follow and column == gear.master):
-                valid = f"{_orientation(draft, column)} before the block"
+                valid = f"{orientation(draft, column)} before the block"
                 raise draft.alarm(
                     "PS0197", f"{draft.letter(column)} not in position control", word, valid=valid
                 )
@@ -243,8 +245,12 @@ def _engage(draft: Draft, command: Couple, word: Word | None) -> None:
     draft.commands.append(command)
 
 
-def _orientation(draft: Draft, column: int) -> str:
-    return "M19 or G28 H0" if column == draft.machine.work_spindle else "G28 V0"
+def orientation(draft: Draft, column: int) -> str:
+    """What takes a rotary axis back to position control."""
+    if column == draft.machine.work_spindle:
+        return "M19 or G28 H0"
+    letter = draft.letter(column)
+    return f"G28 {INCREMENT_LETTER[letter]}0" if letter in INCREMENT_LETTER else f"G28 {letter}0"
 
 
 def _check_slave_speed(draft: Draft, gear: GearBox, rpm: float, word: Word | None) -> None:

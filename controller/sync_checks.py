@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from controller.draft import Draft
 from controller.gearbox import SyncKind
 from controller.lexer import Word
+from controller.sync_blocks import orientation
 
 
 def check_axes(draft: Draft, absolute: Mapping[int, Word], incremental: Mapping[int, Word]) -> None:
@@ -13,7 +14,8 @@ def check_axes(draft: Draft, absolute: Mapping[int, Word], incremental: Mapping[
     for column, word in {**absolute, **incremental}.items():
         _check_sync(draft, column, word, absolute=column in absolute)
         if column in motion.spindles.free or (column == draft.machine.work_spindle and _spindle_mode(draft)):
-            raise draft.alarm("PS0197", f"{word} after the axis has turned as a spindle", word)
+            found = f"{word} after the axis has turned as a spindle"
+            raise draft.alarm("PS0197", found, word, valid=f"{orientation(draft, column)} before the block")
         motion.references.require(column, draft.letter(column), draft.block.place(word))
 
 

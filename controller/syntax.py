@@ -34,6 +34,8 @@ class Block:
     """n of /n; None = the block is not to be skipped"""
     arguments: tuple[Word, ...] = ()
     """of a macro call, in the order they are written"""
+    m_word: Word | None = None
+    """where `m_code` is written"""
 
     @property
     def span(self) -> Span:
@@ -86,6 +88,7 @@ def build_block(words: Sequence[Word], span: Span, letters: frozenset[str]) -> B
     codes: dict[int, Word] = {}
     others: dict[str, Word] = {}
     m_code: MCode | None = None
+    m_word: Word | None = None
     skip: int | None = None
 
     def place(word: Word) -> Span:
@@ -102,11 +105,11 @@ def build_block(words: Sequence[Word], span: Span, letters: frozenset[str]) -> B
         elif address == "M":
             if m_code:
                 raise alarm("PS5016", f"{word} beside {m_code.name}", place(word))
-            m_code = _m_code(word, place)
+            m_code, m_word = _m_code(word, place), word
         elif address == "/":
             skip = int(word.text or 1)
         elif address in "NO":
-            _check_label(word, place(word))
+            _check_label(word, place(word), [before.address for before in words[:k]])
         elif address in PLAIN_ADDRESSES or address in letters:
             if address in others:
                 raise alarm("PS5074", f"{address} for the second time", place(word))
@@ -115,7 +118,9 @@ def build_block(words: Sequence[Word], span: Span, letters: frozenset[str]) -> B
             valid = ", ".join(sorted(letters)) + " for the axes of this machine, " + ", ".join("FSTGMPQRLIJK")
             raise alarm("PS0009", str(word), place(word), valid=valid)
     line = span.line or 1
-    return Block(file=span.file, line=line, codes=codes, m_code=m_code, words=others, skip=skip)
+    return Block(
+        file=span.file, line=line, codes=codes, m_code=m_code, words=others, skip=skip, m_word=m_word
+    )
 
 
 def _macro_call(
@@ -148,7 +153,11 @@ def _macro_call(
     )
 
 
-def _check_label(word: Word, place: Span) -> None:
+def _check_label(word: Word, place: Span, before: Sequence[str]) -> None:
+    """O or N, with the addresses before it: further back nothing would find it."""
+    if any(address not in ("/", "O") or word.address == "O" for address in before):
+        valid = f"{word.address} at the beginning of the block"
+        raise alarm("PS0009", f"{word} behind {before[-1]}", place, valid=valid)
     if word.has_point:
         raise alarm("PS0007", str(word), place)
     if word.negative:

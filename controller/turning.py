@@ -127,6 +127,8 @@ class Turning(Travelling):
             if path is None or axis not in path.slides:
                 self.spindles.commanded[axis] = 0.0
                 self.spindles.free.add(axis)
+                if gear is None:
+                    self.registers.orient(axis, self.timeline.tracks[axis].at(self.time))
         self.spindles.surface, self._underway = None, None
         self.panel.emergency, self.panel.running, self._reset, self._threading = True, False, False, False
         self._by_hand.clear()

@@ -28,6 +28,7 @@ _LOOP_WORD = re.compile(r"(?<![A-Z])(DO|END)[ \t]*(\d+)", re.IGNORECASE | re.ASC
 _KEYWORD = re.compile(r"IF|GOTO|WHILE|DO|END|THEN", re.IGNORECASE)
 _DIGITS = re.compile(r"\d+", re.ASCII)
 _COMMENT = re.compile(r"\(([^)]*)\)")
+_ANNOTATION = re.compile("[;；].*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,7 +172,7 @@ def matching_end(lines: list[str], index: int, end: int, loop: Loop) -> int:
         line = lines[k]
         if "D" not in line and "d" not in line:
             continue
-        for found in _LOOP_WORD.finditer(_COMMENT.sub("", line).partition(";")[0]):
+        for found in _LOOP_WORD.finditer(_ANNOTATION.sub("", _COMMENT.sub("", line))):
             number = int(found.group(2)[:9])
             if found.group(1).upper() == "END":
                 if number != open_loops[-1]:

@@ -420,3 +420,35 @@ def test_follow_and_interpolated_agree_on_an_ideal_machine(drive) -> None:
     one, other = drive(text), drive(text, parameters=FOLLOW)
     assert one.axis("C")[-1] % 360 == pytest.approx(other.axis("C")[-1] % 360, abs=1e-9)
     assert np.abs(one.axis("C") - other.axis("C")[: len(one.axis("C"))]).max() < 2.0
+
+
+def test_the_master_alone_leaves_a_moved_slave_its_limit(run) -> None:
+    """No axis beyond its own limit (sections 2 and 4): what helical shift or an increment of the slave adds
+    to the sync motion is slowed and reported; nothing is left where the master takes the slave to it."""
+    text = "G81 T1 L1 Q1. P80.\nS{}\nG04 X4.\nG01 Z{} F300\nS0\nG80\nM30"
+    slowed = run(text.format(1950, -10))
+    assert [w.number for w in slowed.warnings] == ["HT9107"]
+    assert slowed.peaks["C"].speed == pytest.approx(2000.0, rel=1e-9)
+    none_left = run(text.format(2000, -10)).alarms[0]
+    assert (none_left.number, none_left.span and none_left.span.line) == ("PS1596", 4)
+    other_way = run(text.format(2000, 10))
+    assert (other_way.alarms, other_way.warnings) == ((), ())
+    jogged = run("G81 T1 L1\nS1950\nG04 X4.\nG00 H100.\nS0\nG80\nM30")
+    assert jogged.peaks["C"].speed == pytest.approx(2000.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "column"), [("G81 T20 M08", 9), ("G81 T20\nS100 M03", 6), ("G81 T20\nG04 X1. M30", 9)]
+)
+def test_the_place_of_a_forbidden_m_code(run, text: str, column: int) -> None:
+    """Section 1: each alarm carries the place of what was found; here an M code beside or in sync."""
+    found = run(text).alarms[0].span
+    assert found is not None
+    assert (found.line, found.column) == (text.count("\n") + 1, column)
+
+
+@pytest.mark.parametrize(("setup", "axis", "remedy"), [("hobbing", "Y", "G28 V0"), ("tilted", "B", "G28 B0")])
+def test_the_remedy_for_a_hob_that_turned_freely(run, setup: str, axis: str, remedy: str) -> None:
+    """G80 while turning: the master keeps S, and is a spindle until its own reference return (PS0197)."""
+    found = run(f"G81 T20\nS60\nG80\nG00 {axis}10.\nM30", setup=setup).alarms[0]
+    assert (found.number, found.valid) == ("PS0197", f"{remedy} before the block")

@@ -378,6 +378,20 @@ def test_emergency_stop_cancels_sync(follow: int, helical: str) -> None:
     assert change[2] <= 3600.0 * (1 + 1e-6)
 
 
+@pytest.mark.parametrize("text", ["G51.2 P1 Q2 R90.\nG50.2\nM30", "M03 S100\nG04 X5.\nM30"])
+def test_emergency_stop_keeps_the_absolutes_true(text: str) -> None:
+    """R of G51.2 counts as sync motion (section 3): what an E-stop leaves of it is displayed, as by RESET."""
+    found = act(text, "0.1 emergency stop")
+    assert found.machine["C"] > 0.0
+    assert found.absolute["C"] == pytest.approx(found.machine["C"], abs=1e-9)
+
+
+@pytest.mark.parametrize("text", ["G777\nM30", "G04 X1.\n#3000=1\nM30"])
+def test_events_behind_an_alarm_are_told(text: str) -> None:
+    """Nothing is ever ignored silently: events that an alarm has cut off never came."""
+    assert numbers(act(text, "5 reset", "line 9 feed hold")) == ["HT9137", "HT9137"]
+
+
 def test_after_an_emergency_stop_only_reset_mends_it() -> None:
     text = "G01 Z-10. F600\nM30"
     found = act(text, "0.5 emergency stop", "1 cycle start", "1.5 jog X 1.", "2 reset", "3 cycle start")
@@ -454,6 +468,23 @@ def test_manual_mode_in_sync(gear: str, master: str, slave: str, number: str) ->
     added = act(text, "2.0 feed hold", f"3.0 jog {slave} 30.")
     assert added.turns[slave] - ratio * added.turns[master] == pytest.approx(30.0 / 360.0, abs=1e-9)
     assert added.in_sync_at_end
+
+
+@pytest.mark.parametrize(
+    ("gear", "letter", "number"),
+    [
+        ("G81 T20 L1", "Y", "PS1595"),
+        ("G81 T20 L1", "C", "PS1595"),
+        ("G51.2 P1 Q2", "Y", "PS0220"),
+        ("G51.2 P1 Q2", "C", "PS0220"),
+    ],
+)
+def test_manual_return_of_a_sync_axis_is_refused(gear: str, letter: str, number: str) -> None:
+    """G28 of a sync axis is refused (sections 2, 3), and so is the return by hand: sync would take the axis
+    away from its reference point before it got there."""
+    found = act(f"{gear}\nS60\nG01 Z-20. F60\nM30", "2 feed hold", f"3 reference return {letter}")
+    assert found.alarms[0].number == number
+    assert found.in_sync_at_end
 
 
 def test_jog_of_the_axial_axis_turns_the_slave_of_a_helical_gear() -> None:

@@ -152,3 +152,18 @@ def test_release_while_turning(drive) -> None:
     released = int(np.flatnonzero(driven.sync)[-1])
     assert work[released + 400] == pytest.approx(0.6, rel=1e-9)
     assert tool[released + 400] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_range_of_r_is_told_as_it_is(run) -> None:
+    """R 0..9999.999°: the remedy of PS0218 names that, not a rounded 10000."""
+    found = run("G51.2 P2 Q4 R10000.\nM30").alarms[0]
+    assert (found.number, found.valid) == ("PS0218", "R 0 to 9999.999")
+
+
+def test_lead_beside_the_speed_limit_of_the_tool(run) -> None:
+    """Slave speed over its limit → PS5018, also where the lead A asks for what the sync motion leaves not."""
+    text = "G51.2 P1 Q2 A1.\nS2000\nG04 X4.\nG01 Z{} F100\nS0\nG50.2\nM30"
+    assert run(text.format(1)).alarms[0].number == "PS5018"
+    slowed = run(text.format(-1))
+    assert slowed.alarms == ()
+    assert slowed.peaks["Y"].speed <= slowed.peaks["Y"].speed_limit * (1 + 1e-9)

@@ -32,11 +32,13 @@ def check_command(options: argparse.Namespace) -> ExitCode:
     try:
         result = _check_job(options) if of_job else _check_program(options)
     except AlarmError as refused:
-        if options.format != "json" or refused.alarm.number != "HT9005":
+        if options.format == "text":
             raise
-        from twin.cli.check_json import refused_as_json  # noqa: PLC0415
+        from twin.cli.check_json import annotation, refused_as_json  # noqa: PLC0415
 
-        print(refused_as_json(refused.alarm))
+        print((refused_as_json if options.format == "json" else annotation)(refused.alarm))
+        if refused.alarm.number in ("HT9000", "HT9001"):  # unreadable: no finding, but no use either
+            raise
         return ExitCode.FINDING
     if options.trace:
         _print_messages(result)

@@ -21,7 +21,7 @@ def as_json_text(result: CheckResult) -> str:
 
 
 def refused_as_json(alarm: Alarm) -> str:
-    """What there is to say where parameters contradict each other and nothing was run."""
+    """What there is to say where the program or the parameters are refused whole and nothing was run."""
     empty: dict[str, object] = {"absolute": {}, "machine": {}}
     return json.dumps(
         {"alarms": [as_json(alarm)], "warnings": [], "cycle_time_s": 0.0, "final": empty, "extents": {}},
@@ -95,10 +95,14 @@ def _message(one: Alarm | Advice) -> dict[str, str | int | None]:
 
 def as_github(result: CheckResult) -> Iterator[str]:
     """Workflow commands; their property values escape %, line ends, colon and comma."""
-    for one in result.messages:
-        word = one.severity.value if isinstance(one, Alarm) else one.weight.value
-        text = f"{one.number}: {one.text}: {one.found}; valid: {one.remedy}".replace("%", "%25")
-        yield f"::{word if word != 'note' else 'notice'}{_place(one.span)}::{text}"
+    yield from map(annotation, result.messages)
+
+
+def annotation(one: Alarm | Advice) -> str:
+    """One workflow command."""
+    word = one.severity.value if isinstance(one, Alarm) else one.weight.value
+    text = f"{one.number}: {one.text}: {one.found}; valid: {one.remedy}".replace("%", "%25")
+    return f"::{word if word != 'note' else 'notice'}{_place(one.span)}::{text}"
 
 
 def _place(span: Span | None) -> str:

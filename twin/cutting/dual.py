@@ -179,7 +179,8 @@ def _onto_edges(
     vertices = vertices.copy()
     number = np.cumsum(edgy) - 1
     mine = edgy[sheets.owner] & (sheets.bite >= 0)
-    owner, bite = np.unique(np.stack([number[sheets.owner[mine]], sheets.bite[mine]]), axis=1)
+    bites = sheets.bite.max() + 1
+    owner, bite = np.divmod(np.unique(number[sheets.owner[mine]] * bites + sheets.bite[mine]), bites)
     # a vertex beside a closing face has planes that no bite makes: it stays
     closed = np.zeros(len(vertices), dtype=bool)
     closed[sheets.owner[sheets.bite < 0]] = True

@@ -13,6 +13,9 @@ from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join, l
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+BEYOND = 1.0
+"""[mm] that a tool may stay away from a point and still count in `unculled`"""
+
 
 @dataclass(frozen=True, slots=True)
 class Deepest:
@@ -39,14 +42,22 @@ class Sweep:
         """Number of passes."""
         return sum(f.passes.count for f in self.fields)
 
-    def unculled(self, point: Floats) -> float:
-        """Largest depth of all passes at a point (3,), every one of them evaluated [mm]."""
-        depth = -np.inf
-        for f in self.fields:
-            n = f.passes.count
-            found = f.evaluate(np.broadcast_to(point, (n, 3)), np.arange(n)).depth
-            depth = max(depth, float(found.max(initial=-np.inf)))
-        return depth
+    def unculled(self, points: Floats) -> Floats:
+        """Largest depths (n,) at points (n, 3) of all passes whose tool comes within BEYOND of them.
+
+        Nothing else of the search for the surface is relied on.
+        """
+
+        def work(part: slice) -> float:
+            point = points[part.start]
+            depth = -np.inf
+            for f in self.fields:
+                index = f.near(point, BEYOND)
+                found = f.evaluate(np.broadcast_to(point, (len(index), 3)), index).depth
+                depth = max(depth, float(found.max(initial=-np.inf)))
+            return depth
+
+        return np.array(in_parallel(work, (slice(row, row + 1) for row in range(len(points)))))
 
     def evaluate(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
         """As `DepthField.evaluate_bite`, for bites of any tool."""
@@ -91,16 +102,18 @@ class Sweep:
 
     def near(self, points: Floats, radius: Floats) -> Candidates:
         """Bites that may cut within `radius` (n,) of points (n, 3)."""
-        found = []
-        for point, r in zip(points, radius, strict=True):
-            parts = []
+
+        def work(part: slice) -> Candidates:
+            row = part.start
+            found = []
             for n, f in enumerate(self.fields):
-                index = f.near(point, r)
-                at = np.broadcast_to(point, (len(index), 3))
-                parts.append(f.bites_near(at, index, np.full(len(index), r))[1] + self._first[n])
-            row = np.concatenate(parts)
-            found.append(Candidates(np.array([0, len(row)]), row))
-        return join(found)
+                index = f.near(points[row], float(radius[row]))
+                at = np.broadcast_to(points[row], (len(index), 3))
+                found.append(f.bites_near(at, index, np.full(len(index), radius[row]))[1] + self._first[n])
+            bites = np.concatenate(found)
+            return Candidates(np.array([0, len(bites)]), bites)
+
+        return join(in_parallel(work, (slice(row, row + 1) for row in range(len(points)))))
 
     def deepest(
         self, points: Floats, block: Ints, tangents: Tangents, *, gradient: bool = False, sign: bool = False
