@@ -89,6 +89,10 @@ class Axes(ABC):
         """The block that is being carried out."""
         return self._span
 
+    def enter(self, span: Span) -> None:
+        """The block at `span` is the present one from now on."""
+        self._span = span
+
     @property
     def _line(self) -> int | None:
         """Of the present block."""

@@ -182,7 +182,10 @@ class Execution:
     def _act_at(self, index: int | None) -> Steps[None]:
         """The events of a line whose block begins."""
         if index is not None:
-            for event in self._agenda.at_line(index + 1, self.motion.time):
+            events = self._agenda.at_line(index + 1, self.motion.time)
+            if events:
+                self.motion.enter(self.program.span(index))
+            for event in events:
                 yield from self.motion.act(event)
             if self.motion.attention:
                 yield from self.motion.attend()

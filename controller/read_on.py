@@ -57,4 +57,6 @@ def _by_itself(one: Alarm, text: str, known: frozenset[str]) -> bool:
     """An address is improper by itself only where no code could give it a meaning."""
     if one.number == "PS0009" and one.span and one.span.column:
         return text[one.span.column - 1].upper() not in known
+    if one.number == "PS0006":  # one sign may have its state, two have none
+        return any(sign in one.found[2:] for sign in "+-")
     return one.number in BY_ITSELF

@@ -171,6 +171,13 @@ def test_the_cartesian_limit_of_the_orthogonal_axis_is_not_touched_by_its_slide(
     assert stopped(run(text, "tilted", limits)) == ("OT0500", "slide X")
 
 
+def test_a_cartesian_limit_tells_where_the_axis_stands_in_its_own_coordinates(run) -> None:
+    """A message names what stops and the limit it hits: AOT = 1 measures both figures Cartesian."""
+    limits = ON | {"1320.X": 50.0, "8201#0": 1}
+    (alarm,) = run(f"{HOME}G00 Y60.\nG00 X51.\nM30", "tilted", limits).alarms
+    assert alarm.found == "Cartesian X at its limit 50.000 mm, standing at 51.000 mm"
+
+
 # Check before motion
 
 

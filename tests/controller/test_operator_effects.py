@@ -339,6 +339,13 @@ def test_reset_and_sync(kept: int, in_sync: bool, gear: str, slave: str) -> None
         assert found.signals["MVC"] is found.signals["MVY"] is True
 
 
+def test_reset_at_a_line_names_that_line() -> None:
+    """Section 5, events at a line: the block of the line is the present one, in a subprogram's return, too."""
+    found = act("M98 P2\nG01 Z-1. F100\nM30\nO2\nG01 Z-5. F100\nM99", "line 2 reset")
+    assert [(w.number, w.span and w.span.line) for w in found.warnings] == [("HT9134", 2)]
+    assert found.absolute["Z"] == -5.0
+
+
 def test_reset_keeps_the_absolutes_true() -> None:
     """The sync motion and the braking of the slave are in the displays."""
     found = act(f"{HOB}G81 T20 L1\nS300\nG04 X9.\nM30", "5.0 reset")

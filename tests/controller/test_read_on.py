@@ -44,6 +44,7 @@ def test_what_a_state_could_excuse_is_not_listed(line):
     [
         ("X", "PS0005"),
         ("X1..", "PS0007"),
+        ("X--1.", "PS0006"),
         ("X123456789", "PS0003"),
         ("5", "PS0004"),
         ("G999", "PS0010"),

@@ -103,6 +103,7 @@ def test_null_value_leaves_a_word_out(read) -> None:
         ("GOTO[10*2]\nG00 Z1.\nN20 G00 Z2.\nM30", 2),
         ("WHILE[1 EQ 0]DO2\nG00 Z1.\nEND2\nM30", 0),
         ("#1=0\nDO1\n#1=#1+1\nG00 W1.\nIF[#1 EQ 3]GOTO9\nEND1\nN9 M30", 3),
+        ("#1=0\nWHILE[#1 LT 5]DO1\n#1=#1+1；END1\nG00 W1.\nEND1\nM30", 5),  # ； begins an annotation
         ("#1=0\nIF[[#1 EQ 0] AND [2 GT 1]]GOTO9\nG00 Z1.\nN9 M30", 0),
         ("N5 G00 W1.\n#1=#1+1\nIF[#1 EQ 1]GOTO5\nM30\nN5 G00 W10.\nM30", 11),
     ],

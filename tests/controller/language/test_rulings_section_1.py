@@ -210,3 +210,17 @@ def test_places_count_characters(read, tmp_path: Path) -> None:
     """Line and column from 1, in characters: a Chinese comment counts as many columns as it has signs."""
     alarm = read("(滚齿) G00 X1. Q5\nM30").alarm
     assert (alarm.span.line, alarm.span.column) == (1, 14)
+
+
+@pytest.mark.parametrize(
+    ("block", "column"), [("G00 X1. O5", 9), ("G00 X1. N20", 9), ("N10 N20 X1.", 5), ("N10 O5 X1.", 5)]
+)
+def test_no_label_is_ignored_silently(alarm_in, block: str, column: int) -> None:
+    """O and N that stand where nothing would find them: PS0009, not a block without them."""
+    assert alarm_in(f"{block}\nM30") == ("PS0009", 1, column)
+
+
+def test_a_label_behind_an_o_number_is_found(read) -> None:
+    reading = read("O0001 N10 G00 U1.\nIF [#5001 LT 4] GOTO 10\nM30")
+    assert reading.alarm is None
+    assert reading.machine["X"] == 4.0

@@ -317,3 +317,13 @@ def test_contradicting_parameters_are_an_alarm_in_json_too(check):
     assert (code, err) == (1, "")
     assert [one["number"] for one in found["alarms"]] == ["HT9005"]
     assert found["final"] == {"absolute": {}, "machine": {}}
+
+
+@pytest.mark.parametrize(("text", "number", "code"), [("O1\nM30\nO1\n", "HT9012", 1), ("%\n", "HT9001", 2)])
+def test_a_program_refused_whole_keeps_the_form_of_output(check, text, number, code):
+    found, out, _ = check(text, "--format", "json")
+    assert (found, [one["number"] for one in json.loads(out)["alarms"]]) == (code, [number])
+    found, out, _ = check(text, "--format", "github")
+    assert found == code
+    assert out.startswith("::error file=")
+    assert f"::{number}: " in out

@@ -85,7 +85,7 @@ def test_every_piece_is_concave_and_inside_the_tooth(points, seed, brute_force):
         at = np.full(400, number)
         depth = [profile.piece_depth(at, 0.0, *p)[0] for p in (one, 0.5 * (one + other), other)]
         assert (depth[1] >= 0.5 * (depth[0] + depth[2]) - 1e-12).all()
-        for s, rho in one.T[(depth[0] > CHORD + 2e-6)][:30]:
+        for s, rho in one.T[(depth[0] > CHORD + 2e-6)][:5]:
             assert brute_force.depth_in_outline(outline, s, rho) > 0
             assert abs(s) <= piece.half_width
 
