@@ -184,7 +184,7 @@ class Execution:
         if index is not None:
             events = self._agenda.at_line(index + 1, self.motion.time)
             if events:
-                self.motion.enter(self.program.span(index))
+                self.motion.enter(replace(self.program.span(index), column=1))
             for event in events:
                 yield from self.motion.act(event)
             if self.motion.attention:

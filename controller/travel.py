@@ -218,7 +218,8 @@ class Travelling(Settling):
         return min(number(1421, axes[k]) / 60.0 / abs(share) for k, share in path.shares.items() if share)
 
     def _warn_slowed(self, wanted: float, top: float) -> None:
-        found = f"{wanted * 60.0:.0f} mm/min asked for, {top * 60.0:.0f} possible on this path"
+        possible = f"{top * 60.0:.0f}" if top * 60.0 >= 10.0 else f"{top * 60.0:.3g}"
+        found = f"{wanted * 60.0:.0f} mm/min asked for, {possible} possible on this path"
         self._warn(Alarm(number="HT9107", found=found, span=self._span))
 
     def _by_encoder(self, feed: Feed | None) -> bool:

@@ -164,7 +164,8 @@ def _check_block(block: Block, *, first: bool) -> None:
         if code not in _CODES:
             raise alarm("PS0066", f"{g_name(code)} in the profile", place(word))
     if block.m_code or block.arguments:
-        raise alarm("PS0066", "an M code in the profile", block.span)
+        at = place(block.m_word) if block.m_word else block.span
+        raise alarm("PS0066", "an M code in the profile", at)
     for address, word in block.words.items():
         if address not in _WORDS:
             raise alarm("PS0066", f"{word} in the profile", place(word))

@@ -340,9 +340,11 @@ def test_reset_and_sync(kept: int, in_sync: bool, gear: str, slave: str) -> None
 
 
 def test_reset_at_a_line_names_that_line() -> None:
-    """Section 5, events at a line: the block of the line is the present one, in a subprogram's return, too."""
+    """Section 5, events at a line: the block of the line is the present one, behind a subprogram, too."""
     found = act("M98 P2\nG01 Z-1. F100\nM30\nO2\nG01 Z-5. F100\nM99", "line 2 reset")
-    assert [(w.number, w.span and w.span.line) for w in found.warnings] == [("HT9134", 2)]
+    assert [(w.number, w.span and (w.span.line, w.span.column)) for w in found.warnings] == [
+        ("HT9134", (2, 1))
+    ]
     assert found.absolute["Z"] == -5.0
 
 

@@ -166,4 +166,6 @@ def test_lead_beside_the_speed_limit_of_the_tool(run) -> None:
     assert run(text.format(1)).alarms[0].number == "PS5018"
     slowed = run(text.format(-1))
     assert slowed.alarms == ()
+    crawl = run("G51.2 P1 Q2 A0.001\nG01 Z-0.01 F100\nG50.2\nM30").warnings[0]
+    assert (crawl.number, crawl.found) == ("HT9107", "100 mm/min asked for, 0.05 possible on this path")
     assert slowed.peaks["Y"].speed <= slowed.peaks["Y"].speed_limit * (1 + 1e-9)

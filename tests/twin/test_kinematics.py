@@ -70,7 +70,7 @@ def test_picture_and_physics_have_the_same_chain(setup: Setup) -> None:
 def test_machine_zero_puts_the_tip_on_the_reference(stick_out_mm: float | None) -> None:
     work = WorkMount(diameter_mm=44.0, length_mm=20.0, arbor_diameter_mm=21.0, stick_out_mm=stick_out_mm)
     assembly = mounted(Setup.HOBBING, 0.0, zero=MachineZero(x_mm=380.0, z_mm=290.0), work=work)
-    motion = cutter_motion(chains(assembly), np.array([0.0]), np.zeros((1, 4)))
+    motion = cutter_motion(chains(assembly), np.arange(2.0), np.zeros((2, 4)))
     np.testing.assert_allclose(motion.centre, [[380.0 / 2 + 35.0, 0.0, 290.0]], rtol=0, atol=1e-10)
     front, _ = chains(assembly).work.pose(np.zeros((1, 4)))
     np.testing.assert_allclose(front, [[0.0, 0.0, stick_out_mm or 100.0]], rtol=0, atol=1e-10)
@@ -80,14 +80,14 @@ def test_machine_zero_puts_the_tip_on_the_reference(stick_out_mm: float | None) 
 @settings(max_examples=10, deadline=None)
 def test_hob_axis_stands_at_its_swivel(eta: float) -> None:
     kinematics = chains(mounted(Setup.HOBBING, hob_carrier_swivel(eta)))
-    basis = cutter_motion(kinematics, np.array([0.0]), np.zeros((1, 4))).basis
+    basis = cutter_motion(kinematics, np.arange(2.0), np.zeros((2, 4))).basis
     c, s = np.cos(np.radians(eta)), np.sin(np.radians(eta))
     expected = [[-1.0, 0.0, 0.0], np.cross([0.0, -c, s], [-1.0, 0.0, 0.0]), [0.0, -c, s]]
     np.testing.assert_allclose(basis, expected, rtol=0, atol=1e-14)
 
 
 def test_polygon_head_stands_parallel_to_the_work() -> None:
-    basis = cutter_motion(chains(mounted(Setup.HOBBING, 0.0)), np.array([0.0]), np.zeros((1, 4))).basis
+    basis = cutter_motion(chains(mounted(Setup.HOBBING, 0.0)), np.arange(2.0), np.zeros((2, 4))).basis
     np.testing.assert_array_equal(basis, [[-1, 0, 0], [0, -1, 0], [0, 0, 1]])
 
 

@@ -205,6 +205,7 @@ def test_strokes_carry_the_line_of_the_profile(read) -> None:
         ("N1 G00 X30. Z-1.\nN2 G01 Z-9.", ("PS0065", 4, 1)),
         ("N1 X30.\nN2 G01 Z-9.", ("PS0065", 4, 1)),
         ("N1 G00 X30.\nM08\nN2 G01 Z-9.", ("PS0066", 5, 1)),
+        ("N1 G00 X30.\nX29. M08\nN2 G01 Z-9.", ("PS0066", 5, 6)),
         ("N1 G00 X30.\nG71 U2. R1.\nN2 G01 Z-9.", ("PS0066", 5, 1)),
         ("N1 G00 X30.\nT0101\nN2 G01 Z-9.", ("PS0066", 5, 1)),
         ("N1 G00 X30.\n#1=5\nN2 G01 Z-9.", ("PS0066", 5, 1)),
