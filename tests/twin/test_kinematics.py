@@ -71,7 +71,7 @@ def test_machine_zero_puts_the_tip_on_the_reference(stick_out_mm: float | None) 
     work = WorkMount(diameter_mm=44.0, length_mm=20.0, arbor_diameter_mm=21.0, stick_out_mm=stick_out_mm)
     assembly = mounted(Setup.HOBBING, 0.0, zero=MachineZero(x_mm=380.0, z_mm=290.0), work=work)
     motion = cutter_motion(chains(assembly), np.arange(2.0), np.zeros((2, 4)))
-    np.testing.assert_allclose(motion.centre, [[380.0 / 2 + 35.0, 0.0, 290.0]], rtol=0, atol=1e-10)
+    np.testing.assert_allclose(motion.centre, 2 * [[380.0 / 2 + 35.0, 0.0, 290.0]], rtol=0, atol=1e-10)
     front, _ = chains(assembly).work.pose(np.zeros((1, 4)))
     np.testing.assert_allclose(front, [[0.0, 0.0, stick_out_mm or 100.0]], rtol=0, atol=1e-10)
 
