@@ -12,8 +12,8 @@ import numpy as np
 from benchmarks.reading import reading
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.parameters import delivered
-from controller.source import load_program, parse_program
+from controller.language.source import load_program, parse_program
+from controller.tables.parameters import delivered
 from twin.cutting.blank import Blank
 from twin.cutting.cut import cut
 from twin.job import read_job

@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import cast
 
-from controller.interpreter import Interpreter
-from controller.machine_data import machine_data
-from controller.motion import Motion
-from controller.offsets import Offsets
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.interpreter import Interpreter
+from controller.language.offsets import Offsets
+from controller.language.source import parse_program
+from controller.motion.motion import Motion
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
 
 BLOCKS = 100_000
 KINDS: dict[str, Callable[[int], str]] = {

@@ -12,21 +12,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from controller.alarms import ALARMS, Alarm, ControllerError
-from controller.axes import Circumstances
-from controller.block_numbers import BlockNumbers
 from controller.clock import Chunk, Feedback, Watch, WatchKind
-from controller.encoders import Encoders
 from controller.events import Event, EventKind
 from controller.execution import Execution, Report
-from controller.feeding import FEED_PERIOD
-from controller.follow_type import follow_in
-from controller.offsets import Offsets
-from controller.operator import OperatorEvent, check_events
-from controller.parameters import Parameters
-from controller.requests import Attendance, Reading, SkipWatch
-from controller.sampling import engaged, marked, setpoints
-from controller.source import BlockRef, Program
+from controller.language.block_numbers import BlockNumbers
+from controller.language.offsets import Offsets
+from controller.language.source import BlockRef, Program
+from controller.motion.axes import Circumstances
+from controller.motion.encoders import Encoders
+from controller.motion.feeding import FEED_PERIOD
+from controller.motion.follow_type import follow_in
+from controller.motion.requests import Attendance, Reading, SkipWatch
+from controller.motion.sampling import engaged, marked, setpoints
+from controller.operator.actions import OperatorEvent, check_events
+from controller.tables.alarms import ALARMS, Alarm, ControllerError
+from controller.tables.parameters import Parameters
 
 BATCH = 4096
 """[ticks] a good limit for `propose` where nobody watches"""

@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from controller.gearbox import GearBox
+from controller.laws.gearbox import GearBox
 from controller.span import Span
 
 

@@ -6,21 +6,21 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain, islice
 
-from controller.alarms import Alarm
-from controller.axes import Circumstances
-from controller.coupling import SyncInterval
 from controller.events import EventKind
 from controller.execution import Execution
-from controller.motion import Motion
+from controller.language.offsets import Offsets
+from controller.language.source import Program
+from controller.motion.axes import Circumstances
+from controller.motion.coupling import SyncInterval
+from controller.motion.motion import Motion
+from controller.motion.outputs import output_signals
+from controller.motion.registers import TURN, modulo
+from controller.motion.requests import Answer, Reading
+from controller.motion.spindles import DEG_PER_S
 from controller.observed import Observed
-from controller.offsets import Offsets
-from controller.operator import OperatorEvent
-from controller.outputs import output_signals
-from controller.parameters import Parameters
-from controller.registers import TURN, modulo
-from controller.requests import Answer, Reading
-from controller.source import Program
-from controller.spindles import DEG_PER_S
+from controller.operator.actions import OperatorEvent
+from controller.tables.alarms import Alarm
+from controller.tables.parameters import Parameters
 
 _RATE = 1000
 """[1/s] control ticks, on which an operator's events and readings of encoders fall"""

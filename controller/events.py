@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from controller.alarms import Alarm
+from controller.tables.alarms import Alarm
 
 
 class EventKind(Enum):

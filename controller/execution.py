@@ -7,26 +7,26 @@ operator has to be asked, and returns when nothing more will happen.
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from controller.agenda import Agenda
-from controller.alarms import Alarm, AlarmError, Severity
-from controller.axes import Circumstances
-from controller.block_log import BlockLog
 from controller.commands import Command, Coolant
 from controller.events import EventKind
-from controller.interpreter import Interpreter
 from controller.interrupts import EmergencyStop, Interrupt, LeftStanding, Reset
-from controller.machine_data import machine_data
-from controller.motion import Motion
+from controller.language.block_log import BlockLog
+from controller.language.interpreter import Interpreter
+from controller.language.offsets import Offsets
+from controller.language.source import Program, is_block
+from controller.motion.axes import Circumstances
+from controller.motion.motion import Motion
+from controller.motion.requests import Answer, Request, Steps
+from controller.motion.spindles import DEG_PER_S
 from controller.observed import Observed
-from controller.offsets import Offsets
-from controller.operator import OperatorEvent, check_events
-from controller.panel import Panel
-from controller.parameters import Parameters
-from controller.requests import Answer, Request, Steps
-from controller.signals import Inputs, misprinted
-from controller.source import Program, is_block
+from controller.operator.actions import OperatorEvent, check_events
+from controller.operator.agenda import Agenda
+from controller.operator.panel import Panel
 from controller.span import Span
-from controller.spindles import DEG_PER_S
+from controller.tables.alarms import Alarm, AlarmError, Severity
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import Parameters
+from controller.tables.signals import Inputs, misprinted
 
 _FIRST_WORK_OFFSET = 540
 

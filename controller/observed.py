@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from controller.commands import Command
-from controller.gearbox import GearBox
+from controller.laws.gearbox import GearBox
 from controller.span import Span
 
 

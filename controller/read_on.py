@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 
-from controller.alarms import Alarm, AlarmError
 from controller.dry_run import dry_run
-from controller.machine_data import INCREMENT_LETTER, machine_data
-from controller.parameters import Parameters
-from controller.source import Program, parse_program
+from controller.language.source import Program, parse_program
+from controller.tables.alarms import Alarm, AlarmError
+from controller.tables.machine_data import INCREMENT_LETTER, machine_data
+from controller.tables.parameters import Parameters
 
 BY_ITSELF = frozenset(
     (

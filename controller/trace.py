@@ -10,7 +10,6 @@ times, no positions that depend on when a spindle stops, fixed decimals, no minu
 from collections.abc import Mapping
 from functools import singledispatch
 
-from controller.alarms import Alarm
 from controller.commands import (
     Arc,
     Command,
@@ -34,8 +33,9 @@ from controller.commands import (
     Thread,
     Uncouple,
 )
-from controller.machine_data import INCREMENT_LETTER, MachineData
 from controller.span import Span
+from controller.tables.alarms import Alarm
+from controller.tables.machine_data import INCREMENT_LETTER, MachineData
 
 _CENTRE_LETTERS = {1: "I", 2: "J", 3: "K"}
 """of the centre of an arc, by parameter 1022 of the axis"""

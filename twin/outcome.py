@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from controller.operator import OperatorEvent
+from controller.operator.actions import OperatorEvent
 from twin.advice.advice import Advice
 from twin.cutting.chips import Chips
 from twin.cutting.cut import CutResult

@@ -5,12 +5,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from controller.alarms import AlarmError, ControllerError
-from controller.machine_data import machine_data
-from controller.offsets import Offsets
-from controller.operator import OperatorEvent, check_events, operator_event
-from controller.parameters import Parameters, delivered
-from controller.signals import check_signals
+from controller.language.offsets import Offsets
+from controller.operator.actions import OperatorEvent, check_events, operator_event
+from controller.tables.alarms import AlarmError, ControllerError
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import Parameters, delivered
+from controller.tables.signals import check_signals
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead

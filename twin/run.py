@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from controller.alarms import as_json
 from controller.cnc import Controller
-from controller.source import load_program
+from controller.language.source import load_program
+from controller.tables.alarms import as_json
 from twin.advice.advice import advice_as_json
 from twin.advice.dry import advised_run
 from twin.cutting.chips import chips

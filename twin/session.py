@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.alarms import Alarm
 from controller.clock import Chunk, Feedback, Machine
 from controller.cnc import Controller
+from controller.tables.alarms import Alarm
 from twin.cutters.cutter import Cutter
 from twin.cutting.motion import CutterMotion
 from twin.errors import PartError

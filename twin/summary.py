@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.alarms import Alarm
+from controller.tables.alarms import Alarm
 from twin.advice.advice import Advice
 from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob

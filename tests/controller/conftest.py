@@ -9,9 +9,9 @@ import pytest
 from controller.clock import Chunk, Feedback
 from controller.cnc import Controller
 from controller.dry_run import DryRun, dry_run
-from controller.offsets import Offsets
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.offsets import Offsets
+from controller.language.source import parse_program
+from controller.tables.parameters import delivered
 
 
 class IdealDrives:

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from controller import sampling
-from controller.alarms import AlarmClass, ControllerError
 from controller.clock import Feedback, MachineAlarm
 from controller.cnc import Controller
 from controller.dry_run import dry_run
 from controller.events import EventKind
-from controller.offsets import Offsets
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.offsets import Offsets
+from controller.language.source import parse_program
+from controller.motion import sampling
+from controller.tables.alarms import AlarmClass, ControllerError
+from controller.tables.parameters import delivered
 
 EVERYTHING = """G28 U0 W0
 G28 H0 V0

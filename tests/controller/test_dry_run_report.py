@@ -8,11 +8,11 @@ import pytest
 
 from controller.commands import Move, ProgramEnd, SpindleSpeed
 from controller.dry_run import dry_run
-from controller.gearbox import SyncKind
+from controller.language.source import parse_program
+from controller.laws.gearbox import SyncKind
 from controller.observed import Observed
-from controller.operator import read_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.operator.actions import read_event
+from controller.tables.parameters import delivered
 
 
 def test_peaks_of_slides(run) -> None:

@@ -7,8 +7,8 @@ import pytest
 
 from controller.clock import Feedback
 from controller.cnc import Controller
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.tables.parameters import delivered
 
 SLIDE = 2000.0
 """[mm/s²] delivered acceleration"""

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.gearbox import GearBox, SyncKind, helix_rate, helix_rate_inch, polygon_rate, slave_travel
+from controller.laws.gearbox import GearBox, SyncKind, helix_rate, helix_rate_inch, polygon_rate, slave_travel
 
 
 def box(numerator: int, denominator: int) -> GearBox:

@@ -6,12 +6,12 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from controller.axes import Circumstances
 from controller.execution import Execution
-from controller.offsets import Offsets
-from controller.parameters import delivered
-from controller.sampling import setpoints
-from controller.source import parse_program
+from controller.language.offsets import Offsets
+from controller.language.source import parse_program
+from controller.motion.axes import Circumstances
+from controller.motion.sampling import setpoints
+from controller.tables.parameters import delivered
 
 HOME = "G28 U0 W0\nG28 H0 V0\n"
 FOLLOW = {"201#7": 1}

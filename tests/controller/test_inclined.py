@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.inclined import InclinedPair
+from controller.laws.inclined import InclinedPair
 
 ON = {"8200#0": 1, "1006#3.X": 0}
 HOME = "G28 Y0\nG28 X0\n"

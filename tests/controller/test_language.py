@@ -3,7 +3,7 @@ positions."""
 
 import pytest
 
-from controller.offsets import Offsets
+from controller.language.offsets import Offsets
 
 
 @pytest.mark.parametrize(
@@ -198,10 +198,10 @@ def test_programs_without_end(alarm_of, text: str, number: str) -> None:
 
 def test_steps_without_motion_end(run, monkeypatch) -> None:
     """A program that makes 10⁶ steps without motion ends in an alarm that names the line (here 10³)."""
-    import controller.interpreter
+    import controller.language.interpreter
 
-    assert controller.interpreter.LONGEST_STANDSTILL == 1_000_000
-    monkeypatch.setattr(controller.interpreter, "LONGEST_STANDSTILL", 1000)
+    assert controller.language.interpreter.LONGEST_STANDSTILL == 1_000_000
+    monkeypatch.setattr(controller.language.interpreter, "LONGEST_STANDSTILL", 1000)
     loop = "O1\nM98 P2 L99999999\nM30\nO2\n{}\nM99"
     (alarm,) = run(loop.format("G04 P0")).alarms
     assert alarm.span is not None

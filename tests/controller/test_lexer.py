@@ -1,7 +1,7 @@
 import pytest
 
-from controller.alarms import AlarmError
-from controller.lexer import lex
+from controller.language.lexer import lex
+from controller.tables.alarms import AlarmError
 
 
 def words(line: str) -> list[tuple[str, str, int]]:

@@ -8,14 +8,14 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from controller.alarms import AlarmClass
 from controller.commands import StrokeCheck
-from controller.inclined import Frame
-from controller.limits import StrokeLimits
-from controller.machine_data import machine_data
-from controller.parameters import delivered
-from controller.stroke_area import Area, Limit
-from controller.wave import Wave, circle
+from controller.laws.inclined import Frame
+from controller.laws.stroke_area import Area, Limit
+from controller.laws.wave import Wave, circle
+from controller.motion.limits import StrokeLimits
+from controller.tables.alarms import AlarmClass
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
 
 NEAR = 1e-6
 """[mm] positions closer than this to a face are left to either side of it"""

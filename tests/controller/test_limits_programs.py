@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller.dry_run import dry_run
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.tables.parameters import delivered
 
 ON = {"8200#0": 1, "1006#3.X": 0}
 HOME = "G28 Y0\nG28 X0\n"

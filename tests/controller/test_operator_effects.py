@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from controller.clock import Feedback
 from controller.cnc import Controller
 from controller.dry_run import DryRun, dry_run
-from controller.operator import read_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.operator.actions import read_event
+from controller.tables.parameters import delivered
 
 HOB = "G28 U0 W0\nG28 H0 V0\n"
 RADIUS = {"8200#0": 1, "1006#3.X": 0}
@@ -597,9 +597,9 @@ def test_mirror_image_moves_the_slide_the_other_way() -> None:
 
 def test_displayed_speed_leaves_the_sync_pulses_out() -> None:
     """Hobbing, 注意事项: the speed display does not count the pulses of the gear box."""
-    from controller.axes import Circumstances
     from controller.execution import Execution
-    from controller.offsets import Offsets
+    from controller.language.offsets import Offsets
+    from controller.motion.axes import Circumstances
 
     text = "G81 T20 L1\nS300\nG01 Z-20. F600\nG80\nM30"
     execution = Execution(

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from controller.clock import Feedback
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.operator import operator_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.operator.actions import operator_event
+from controller.tables.parameters import delivered
 
 HOBBING = """G28 U0 W0
 G28 H0 V0

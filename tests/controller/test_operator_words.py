@@ -2,12 +2,12 @@
 
 import pytest
 
-from controller.alarms import ControllerError
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.operator import ACTIONS, OperatorAction, operator_event, read_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.operator.actions import ACTIONS, OperatorAction, operator_event, read_event
+from controller.tables.alarms import ControllerError
+from controller.tables.parameters import delivered
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 import pytest
 
-from controller.alarms import AlarmError, ControllerError
-from controller.machine_data import machine_data
-from controller.parameters import PARAMETERS, delivered
+from controller.tables.alarms import AlarmError, ControllerError
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import PARAMETERS, delivered
 
 
 def test_delivered_setups() -> None:

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from controller.clock import Feedback
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.operator import operator_event
-from controller.parameters import delivered
-from controller.rest_to_rest import ShortLane
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.motion.rest_to_rest import ShortLane
+from controller.operator.actions import operator_event
+from controller.tables.parameters import delivered
 
 words = st.lists(
     st.tuples(
@@ -71,9 +71,9 @@ def test_the_lane_is_taken(monkeypatch) -> None:
 
 def test_a_million_blocks_keep_no_knots() -> None:
     """Memory does not grow with the program: neither knots nor blocks are kept, but 16 bytes a block."""
-    from controller.axes import Circumstances
     from controller.execution import Execution
-    from controller.offsets import Offsets
+    from controller.language.offsets import Offsets
+    from controller.motion.axes import Circumstances
 
     lines = "\n".join(f"G01 X-{k % 7}. Z-{k % 90}.5 F7000." for k in range(20_000))
     execution = Execution(

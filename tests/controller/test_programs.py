@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from controller.dry_run import DryRun, dry_run
-from controller.parameters import delivered
-from controller.source import load_program
+from controller.language.source import load_program
+from controller.tables.parameters import delivered
 
 PROGRAMS = Path(__file__).parents[1] / "programs"
 

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.alarms import ControllerError
 from controller.clock import Feedback
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.tables.alarms import ControllerError
+from controller.tables.parameters import delivered
 
 LETTERS = "GMTSFXZYCUWVHPQRLIKNOAB0123456789.-+;；()%/# \n"
 WORDS = re.findall(

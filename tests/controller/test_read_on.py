@@ -2,10 +2,10 @@
 
 import pytest
 
-from controller.alarms import ALARMS
-from controller.parameters import delivered
+from controller.language.source import parse_program
 from controller.read_on import BY_ITSELF, MOST_ALARMS, alarms_behind
-from controller.source import parse_program
+from controller.tables.alarms import ALARMS
+from controller.tables.parameters import delivered
 
 
 def numbers(

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.alarms import AlarmError
-from controller.inclined import InclinedPair, manual_return
-from controller.reference import Reference, References
+from controller.laws.inclined import InclinedPair, manual_return
+from controller.motion.reference import Reference, References
+from controller.tables.alarms import AlarmError
 
 PAIR = InclinedPair(inclined=2, orthogonal=0, angle=-30.0)
 X, Z, Y = 0, 1, 2

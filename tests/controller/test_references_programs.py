@@ -6,9 +6,9 @@ from collections.abc import Callable
 import pytest
 
 from controller.dry_run import DryRun, dry_run
-from controller.operator import operator_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.operator.actions import operator_event
+from controller.tables.parameters import delivered
 
 ON = {"8200#0": 1, "1006#3.X": 0}
 HOME = "G28 Y0\nG28 X0\n"

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from controller.codes import POWER_ON, g_name
-from controller.machine_data import machine_data
-from controller.offsets import Offsets
-from controller.parameters import PARAMETERS, delivered
+from controller.language.offsets import Offsets
+from controller.tables.codes import POWER_ON, g_name
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import PARAMETERS, delivered
 
 INCLINED = {"8200#0": 1}
 

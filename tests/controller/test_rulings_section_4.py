@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.alarms import ControllerError
 from controller.dry_run import dry_run
-from controller.inclined import Frame
-from controller.machine_data import machine_data
-from controller.parameters import delivered
-from controller.signals import SIGNALS
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.laws.inclined import Frame
+from controller.tables.alarms import ControllerError
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
+from controller.tables.signals import SIGNALS
 
 ON = {"8200#0": 1}
 IN_RADIUS = ON | {"1006#3.X": 0}

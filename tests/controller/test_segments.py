@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.sampling import positions
-from controller.segments import Phase, Track, clip, trapezoid
-from controller.wave import Wave
+from controller.laws.segments import Phase, Track, clip, trapezoid
+from controller.laws.wave import Wave
+from controller.motion.sampling import positions
 
 lengths = st.floats(1e-3, 1e3)
 speeds = st.floats(0.1, 500.0)

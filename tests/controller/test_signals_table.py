@@ -2,15 +2,23 @@
 
 import pytest
 
-from controller.alarms import AlarmError, ControllerError
-from controller.inclined import Frame, InclinedPair
-from controller.interlock import holds_back, induced_past_interlock
-from controller.machine_data import machine_data
-from controller.outputs import output_signals
-from controller.parameters import delivered
-from controller.reference import References
-from controller.signals import SIGNALS, AxisInput, Direction, Inputs, check_signals, misprinted, spelled
+from controller.laws.inclined import Frame, InclinedPair
+from controller.motion.interlock import holds_back, induced_past_interlock
+from controller.motion.outputs import output_signals
+from controller.motion.reference import References
 from controller.span import Span
+from controller.tables.alarms import AlarmError, ControllerError
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
+from controller.tables.signals import (
+    SIGNALS,
+    AxisInput,
+    Direction,
+    Inputs,
+    check_signals,
+    misprinted,
+    spelled,
+)
 
 LETTERS = ("X", "Z", "Y", "C")
 PAIR = InclinedPair(inclined=2, orthogonal=0, angle=-30.0)

@@ -6,9 +6,9 @@ import pytest
 from controller.clock import Feedback, WatchKind
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.operator import read_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.operator.actions import read_event
+from controller.tables.parameters import delivered
 
 
 class Wall:

@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from controller.alarms import AlarmError
-from controller.source import load_program, parse_program
+from controller.language.source import load_program, parse_program
+from controller.tables.alarms import AlarmError
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "gbk"])

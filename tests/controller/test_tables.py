@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 import controller
-from controller.alarms import ALARMS, Alarm, AlarmClass, Severity
-from controller.codes import G_CODES, POWER_ON, Group, g_name
 from controller.span import Span
+from controller.tables.alarms import ALARMS, Alarm, AlarmClass, Severity
+from controller.tables.codes import G_CODES, POWER_ON, Group, g_name
 
 FILES = Path(controller.__path__[0]).rglob("*.py")
 SOURCES = [path.read_text() for path in FILES if path.name != "alarms.py"]

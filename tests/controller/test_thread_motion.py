@@ -8,9 +8,9 @@ import pytest
 from controller.clock import Feedback
 from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.operator import read_event
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.source import parse_program
+from controller.operator.actions import read_event
+from controller.tables.parameters import delivered
 
 THREAD = "M03 S300\nG32 Z-30. F2.\nG00 X10.\nZ0\nX0\nG04 X0.123\nG32 Z-30. F2.\nM05\nM30"
 

@@ -8,10 +8,10 @@ import pytest
 
 from controller.commands import Arc, Command, Feed, Move, ReferenceReturn, Skip, StrokeCheck, Thread
 from controller.dry_run import dry_run
-from controller.machine_data import machine_data
-from controller.parameters import delivered
-from controller.source import Program, load_program, parse_program
+from controller.language.source import Program, load_program, parse_program
 from controller.span import Span
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
 from controller.trace import number, trace_alarm, trace_line
 
 PROGRAMS = Path(__file__).parents[1] / "programs"

@@ -7,12 +7,12 @@ import time
 import traceback
 from pathlib import Path
 
-from controller import flow, interpreter
-from controller.alarms import ControllerError
-from controller.cycles import threads, words
 from controller.dry_run import dry_run
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language import flow, interpreter
+from controller.language.cycles import threads, words
+from controller.language.source import parse_program
+from controller.tables.alarms import ControllerError
+from controller.tables.parameters import delivered
 
 ROOT = Path(__file__).parents[2]
 SOURCES = sorted([*ROOT.glob("tests/programs/*/*.nc"), *ROOT.glob("scenes/*/*.nc")])

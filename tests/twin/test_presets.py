@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from controller.cnc import Controller
-from controller.source import parse_program
+from controller.language.source import parse_program
 from twin.job import read_job
 from twin.machine import IdealMachine
 from twin.presets import cutters_of, settings_of

@@ -52,7 +52,7 @@ class Advice:
 
 
 def as_warning(advice: Advice) -> dict[str, str | int | None]:
-    """Advice as plain values, in the form of `controller.alarms.as_json`."""
+    """Advice as plain values, in the form of `controller.tables.alarms.as_json`."""
     span = advice.span or Span(file="")
     return {
         "number": advice.number,

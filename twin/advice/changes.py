@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from controller.commands import Couple, SpindleSpeed, Uncouple
-from controller.gearbox import GearBox
+from controller.laws.gearbox import GearBox
 from twin.advice.advice import Advice
 from twin.advice.kinds import Kind
 from twin.advice.moment import Moment

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from controller.dry_run import DryRun, dry_run
-from controller.machine_data import machine_data
+from controller.language.source import Program
 from controller.observed import Observed
-from controller.source import Program
+from controller.tables.machine_data import machine_data
 from twin.advice.advice import Advice
 from twin.advice.adviser import Adviser
 from twin.advice.scene import scene_of

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from controller.gearbox import SyncKind
+from controller.laws.gearbox import SyncKind
 from twin.advice.advice import Advice
 from twin.advice.gear_law import feed_mark
 from twin.advice.kinds import Kind

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from controller.gearbox import SyncKind
+from controller.laws.gearbox import SyncKind
 from twin.advice.advice import Advice
 from twin.advice.gear_law import helix_slope, work_rate
 from twin.advice.hob_data import SAME

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from controller.commands import Arc, Couple, Feed, MachineMove, Move, ReferenceReturn, Skip, Thread
-from controller.gearbox import GearBox, SyncKind
+from controller.laws.gearbox import GearBox, SyncKind
 from controller.observed import Observed
 from controller.span import Span
 from twin.advice.scene import MountedTool

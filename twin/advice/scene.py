@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from controller.machine_data import MachineData
-from controller.parameters import delivered
+from controller.tables.machine_data import MachineData
+from controller.tables.parameters import delivered
 from twin.advice.envelope import Envelope, HeadEnvelope, HobEnvelope
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from controller.commands import SelectTool
-from controller.gearbox import SyncKind
+from controller.laws.gearbox import SyncKind
 from controller.observed import Observed
 from twin.advice.advice import Advice
 from twin.advice.kinds import Kind

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from controller.gearbox import SyncKind
+from controller.laws.gearbox import SyncKind
 from twin.advice.advice import Advice
 from twin.advice.gear_law import cutting_speed
 from twin.advice.kinds import Kind

@@ -5,14 +5,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from controller.alarms import AlarmError
 from controller.dry_run import DryRun, dry_run
-from controller.machine_data import MachineData, machine_data
+from controller.language.offsets import Offsets
+from controller.language.source import Program, load_program
 from controller.observed import Observed
-from controller.offsets import Offsets
-from controller.parameters import delivered
 from controller.read_on import alarms_behind
-from controller.source import Program, load_program
+from controller.tables.alarms import AlarmError
+from controller.tables.machine_data import MachineData, machine_data
+from controller.tables.parameters import delivered
 from controller.trace import trace_alarm, trace_line
 from twin.cli.check_result import CheckResult
 from twin.cli.check_text import as_text

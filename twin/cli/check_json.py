@@ -3,8 +3,8 @@
 import json
 from collections.abc import Iterator
 
-from controller.alarms import Alarm, as_json
 from controller.span import Span
+from controller.tables.alarms import Alarm, as_json
 from twin.advice.advice import Advice, advice_as_json, as_warning
 from twin.cli.check_result import CheckResult
 

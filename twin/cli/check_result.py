@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from controller.alarms import Alarm
 from controller.dry_run import DryRun
-from controller.machine_data import MachineData
-from controller.source import Program
+from controller.language.source import Program
+from controller.tables.alarms import Alarm
+from controller.tables.machine_data import MachineData
 from twin.errors import ExitCode
 
 if TYPE_CHECKING:

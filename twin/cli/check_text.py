@@ -5,7 +5,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from controller.registers import TURN
+from controller.motion.registers import TURN
 from twin.cli.check_result import CheckResult
 
 _LONGEST = 5

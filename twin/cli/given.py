@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from controller.alarms import AlarmError, ControllerError
-from controller.machine_data import machine_data
-from controller.operator import OperatorEvent, check_events, read_event
-from controller.parameters import delivered
-from controller.signals import check_signals
+from controller.operator.actions import OperatorEvent, check_events, read_event
+from controller.tables.alarms import AlarmError, ControllerError
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
+from controller.tables.signals import check_signals
 from twin.errors import InputError
 
 

@@ -31,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _code(error: Exception) -> ExitCode:
-    from controller.alarms import AlarmError, ControllerError  # noqa: PLC0415
+    from controller.tables.alarms import AlarmError, ControllerError  # noqa: PLC0415
 
     if isinstance(error, HobtwinError):
         return error.exit_code

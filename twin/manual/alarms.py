@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from controller.alarm_notes import note_of
-from controller.alarms import ALARMS, AlarmClass, Severity
+from controller.tables.alarm_notes import note_of
+from controller.tables.alarms import ALARMS, AlarmClass, Severity
 from twin.advice.kinds import KINDS
 from twin.manual.entry import Chapter, Entry
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from controller.alarm_notes import NOTES
-from controller.alarms import ALARMS
-from controller.codes import G_CODES, M_CODES, POWER_ON, Group, Support
+from controller.tables.alarm_notes import NOTES
+from controller.tables.alarms import ALARMS
+from controller.tables.codes import G_CODES, M_CODES, POWER_ON, Group, Support
 from twin.manual.entry import Chapter, Entry, spelled
 
 _M_CLAUSE = "rulings, section 1, M codes"

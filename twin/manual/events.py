@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from controller.operator import ACTIONS
+from controller.operator.actions import ACTIONS
 from twin.manual.entry import Chapter, Entry, spelled
 
 

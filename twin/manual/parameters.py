@@ -2,7 +2,14 @@
 
 from collections.abc import Iterator
 
-from controller.parameters import PARAMETERS, SETUPS, ParameterEntry, ParameterKind, Parameters, delivered
+from controller.tables.parameters import (
+    PARAMETERS,
+    SETUPS,
+    ParameterEntry,
+    ParameterKind,
+    Parameters,
+    delivered,
+)
 from twin.manual.entry import Chapter, Entry
 
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from controller.inclined import Frame
-from controller.signals import AXIS_LETTERS, MISPRINTS, SIGNALS, Direction, Signal
+from controller.laws.inclined import Frame
+from controller.tables.signals import AXIS_LETTERS, MISPRINTS, SIGNALS, Direction, Signal
 from twin.manual.entry import Chapter, Entry, spelled
 
 _FRAMES = {

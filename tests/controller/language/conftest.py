@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from controller.alarms import Alarm, AlarmError
 from controller.commands import (
     Arc,
     Command,
@@ -20,11 +19,12 @@ from controller.commands import (
     SpindleSpeed,
     Thread,
 )
-from controller.interpreter import Interpreter
-from controller.machine_data import machine_data
-from controller.offsets import Offsets
-from controller.parameters import delivered
-from controller.source import Program, parse_program
+from controller.language.interpreter import Interpreter
+from controller.language.offsets import Offsets
+from controller.language.source import Program, parse_program
+from controller.tables.alarms import Alarm, AlarmError
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
 
 
 class CountingMotion:

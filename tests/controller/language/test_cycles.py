@@ -323,12 +323,12 @@ def test_taper_and_run_out_of_threads(read) -> None:
 
 def test_cycles_in_mdi(counting_motion) -> None:
     """PS0067: a profile needs a stored program; PS0123: so does a macro statement."""
-    from controller.alarms import AlarmError
-    from controller.interpreter import Interpreter
-    from controller.machine_data import machine_data
-    from controller.offsets import Offsets
-    from controller.parameters import delivered
-    from controller.source import parse_program
+    from controller.language.interpreter import Interpreter
+    from controller.language.offsets import Offsets
+    from controller.language.source import parse_program
+    from controller.tables.alarms import AlarmError
+    from controller.tables.machine_data import machine_data
+    from controller.tables.parameters import delivered
 
     interpreter = Interpreter(parse_program("N1 G00 X1.\nM30"), machine_data(delivered()), Offsets(), {})
     motion = counting_motion(4)

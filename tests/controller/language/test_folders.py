@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from controller.alarms import AlarmError
-from controller.source import load_program, parse_program
+from controller.language.source import load_program, parse_program
+from controller.tables.alarms import AlarmError
 
 
 def write(folder: Path, **texts: str) -> Path:
@@ -99,7 +99,7 @@ def test_strange_files(read, tmp_path: Path, data: bytes, number: str) -> None:
 
 def test_devices_and_large_files_end(monkeypatch, tmp_path: Path) -> None:
     """A file without end is refused at the limit (here 1 KiB, as delivered 256 MiB)."""
-    import controller.source
+    import controller.language.source
 
     assert controller.source.LARGEST_FILE == 256 * 2**20
     monkeypatch.setattr(controller.source, "LARGEST_FILE", 1024)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller.macro import functions as f
+from controller.language.macro import functions as f
 
 ANGLES = st.floats(-1e4, 1e4, allow_nan=False)
 NUMBERS = st.floats(-1e6, 1e6, allow_nan=False)

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.alarms import AlarmClass
 from controller.commands import Move, ProgramStop, ShiftCoordinates
-from controller.offsets import Offsets
+from controller.language.offsets import Offsets
+from controller.tables.alarms import AlarmClass
 
 
 @pytest.mark.parametrize(
@@ -355,10 +355,10 @@ def test_loops_that_something_ends_are_not(read) -> None:
 
 def test_repetitions_are_bounded(alarm_in, monkeypatch) -> None:
     """200 000 jumps back or repeated calls, moving or not, are HT9015 (here 10²)."""
-    import controller.flow
+    import controller.language.flow
 
-    assert controller.flow.MOST_REPETITIONS == 200_000
-    monkeypatch.setattr(controller.flow, "MOST_REPETITIONS", 100)
+    assert controller.language.flow.MOST_REPETITIONS == 200_000
+    monkeypatch.setattr(controller.language.flow, "MOST_REPETITIONS", 100)
     assert alarm_in("O1\nM98 P2 L99999999\nM30\nO2\nG00 U1.\nU-1.\nM99")[0] == "HT9015"
     assert alarm_in("WHILE[1 EQ 1]DO1\n#1=#1+1\nG00 Z1.\nEND1\nM30")[0] == "HT9015"
     assert alarm_in("O1\nG65 P2 L5000\nM30\nO2\nG00 Z1.\nM99")[0] == "HT9015"
@@ -366,9 +366,9 @@ def test_repetitions_are_bounded(alarm_in, monkeypatch) -> None:
 
 def test_steps_without_motion_name_their_line(alarm_in, monkeypatch) -> None:
     """Rulings, section 1: 10⁶ steps without motion end in an alarm that names the line (here 10²)."""
-    import controller.interpreter
+    import controller.language.interpreter
 
-    monkeypatch.setattr(controller.interpreter, "LONGEST_STANDSTILL", 100)
+    monkeypatch.setattr(controller.language.interpreter, "LONGEST_STANDSTILL", 100)
     number, line, _ = alarm_in("#1=0\nN1 #1=#1+1\nGOTO1\nM30")
     assert (number, line in (2, 3)) == ("HT9006", True)
 

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from controller.interpreter import Interpreter
-from controller.plain_lane import PlainLane
+from controller.language.interpreter import Interpreter
+from controller.language.plain_lane import PlainLane
 
 NUMBER = st.sampled_from(
     [
@@ -76,10 +76,10 @@ def test_both_ways_agree(read, text: str, setup: str, dpi: int) -> None:
 
 def test_the_lane_is_taken(read, monkeypatch) -> None:
     """Plain blocks never reach the lexer."""
-    import controller.syntax
+    from controller.language import syntax
 
     seen: list[str] = []
-    lex = controller.syntax.lex
-    monkeypatch.setattr(controller.syntax, "lex", lambda line, *rest: seen.append(line) or lex(line, *rest))
+    lex = syntax.lex
+    monkeypatch.setattr(syntax, "lex", lambda line, *rest: seen.append(line) or lex(line, *rest))
     read("G98 F100\nN10 G01 X10.123 Z-5.2 F100.\nN20 G00 X5. Z1.\nX4.\nM30")
     assert seen == ["G98 F100", "M30"]

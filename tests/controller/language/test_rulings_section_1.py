@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from controller.alarms import ALARMS, AlarmError
-from controller.codes import G_CODES, Support, g_name
 from controller.commands import Move, ReferenceReturn, SpindleSpeed, SurfaceSpeed
-from controller.interpreter import Interpreter
-from controller.machine_data import machine_data
-from controller.offsets import Offsets
-from controller.parameters import delivered
-from controller.source import parse_program
+from controller.language.interpreter import Interpreter
+from controller.language.offsets import Offsets
+from controller.language.source import parse_program
+from controller.tables.alarms import ALARMS, AlarmError
+from controller.tables.codes import G_CODES, Support, g_name
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import delivered
 
 MUST_WORK = """
 G00 Z1.|G01 Z2. F9|G02 U2. W-1. R1. F9|G03 U2. W-1. R1. F9|G04 P5|G10 P1 X1.|G17|G18|G20|G21|G22|G23|G27 X0

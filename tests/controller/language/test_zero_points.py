@@ -12,7 +12,7 @@ from controller.commands import (
     StrokeCheck,
     SurfaceSpeed,
 )
-from controller.offsets import Offsets
+from controller.language.offsets import Offsets
 
 
 def test_work_offsets_by_g10(read) -> None:

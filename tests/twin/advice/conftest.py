@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from controller.dry_run import dry_run
-from controller.machine_data import machine_data
-from controller.source import load_program
+from controller.language.source import load_program
+from controller.tables.machine_data import machine_data
 from twin.advice.advice import Advice
 from twin.advice.adviser import Adviser
 from twin.advice.scene import scene_of

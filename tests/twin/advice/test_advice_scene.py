@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from controller.commands import Arc, Feed
-from controller.machine_data import machine_data
 from controller.observed import Observed
 from controller.span import Span
+from controller.tables.machine_data import machine_data
 from twin.advice.paths import path_of
 from twin.advice.scene import scene_of
 from twin.job import read_job

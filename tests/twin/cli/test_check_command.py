@@ -169,9 +169,9 @@ M30
 
 def test_keep_going_finds_nothing_in_a_program_that_is_right(check):
     """Every program that runs to its end has no line that is wrong by itself."""
-    from controller.parameters import delivered
+    from controller.language.source import load_program
     from controller.read_on import alarms_behind
-    from controller.source import load_program
+    from controller.tables.parameters import delivered
 
     for path in sorted((PROGRAMS / "ok").glob("*.nc")):
         assert alarms_behind(load_program(path), delivered(), 0) == (), path

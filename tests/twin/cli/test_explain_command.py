@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from controller.alarm_notes import NOTES
-from controller.alarms import ALARMS
-from controller.codes import G_CODES, M_CODES
-from controller.operator import ACTIONS
-from controller.parameters import PARAMETERS
-from controller.signals import SIGNALS
+from controller.operator.actions import ACTIONS
+from controller.tables.alarm_notes import NOTES
+from controller.tables.alarms import ALARMS
+from controller.tables.codes import G_CODES, M_CODES
+from controller.tables.parameters import PARAMETERS
+from controller.tables.signals import SIGNALS
 from twin.advice.kinds import KINDS
 from twin.cli import main
 from twin.errors import InputError

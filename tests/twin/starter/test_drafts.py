@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller.dry_run import dry_run
-from controller.source import load_program
+from controller.language.source import load_program
 from twin.errors import InputError
 from twin.inspection.tolerances import GearSize, gear_tolerance
 from twin.job import read_job

@@ -1,0 +1,1 @@
+"""The laws of the lathe as pure functions."""

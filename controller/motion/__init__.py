@@ -1,0 +1,1 @@
+"""Typed commands to closed-form motion of the axes."""

@@ -1,0 +1,83 @@
+"""The planned motion at many times at once: what a run reads of the timeline, tick by tick.
+
+A position is that of the piece that ends at its time, so that what is planned behind a time does not change a
+bit of the sample at it. A dry run needs nothing of this.
+"""
+
+import bisect
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller.laws.gearbox import slave_travel
+from controller.laws.segments import Round, Straight, Track
+from controller.motion.timeline import Epoch, Marks, Timeline
+
+Floats = NDArray[np.float64]
+
+
+def setpoints(timeline: Timeline, time: Floats) -> Floats:
+    """(n, axes) setpoints at ascending times (n,); follow-type rotation is left to the machine."""
+    out = np.stack([positions(track, time) for track in timeline.tracks], axis=1)
+    for epoch in timeline.epochs:
+        first, last = np.searchsorted(time, (epoch.start, epoch.end), side="right")
+        if first < last:
+            part = out[first:last]
+            added = _shifts(epoch, part)
+            if not epoch.gear.follow:
+                added += slave_travel(epoch.gear, part[:, epoch.gear.master] - epoch.master_start)
+            part[:, epoch.gear.slave] += added
+    return out
+
+
+def engaged(timeline: Timeline, time: Floats) -> NDArray[np.bool_]:
+    """(n,) whether the gear box was engaged up to each time."""
+    found = np.zeros(len(time), dtype=bool)
+    for epoch in timeline.epochs:
+        found |= (time > epoch.start) & (time <= epoch.end)
+    return found
+
+
+def marked(marks: Marks, time: Floats) -> NDArray[np.int64]:
+    """(n,) values in force up to each of the ascending times (n,)."""
+    if marks.times[-1] < time[0]:
+        return np.full(len(time), marks.values[-1])
+    k = np.searchsorted(np.array(marks.times), time, side="left") - 1
+    return np.array(marks.values)[k]
+
+
+def positions(track: Track, time: Floats) -> Floats:
+    """(n,) positions of one axis at the ascending times (n,)."""
+    first = max(bisect.bisect_left(track.times, time[0]) - 1, 0)
+    last = max(bisect.bisect_left(track.times, time[-1]), first + 1)
+    knots = track.knots[first:last]
+    if len(knots) == 1:
+        return _piece(knots[0], time - track.times[first])
+    times = np.array(track.times[first:last])
+    k = np.searchsorted(times[1:], time, side="left")
+    tau = time - times[k]
+    position, speed, half = np.array([knot if len(knot) == 3 else (0.0,) * 3 for knot in knots])[k].T
+    out = position + tau * (speed + tau * half)
+    for j, knot in enumerate(knots):
+        if len(knot) == 4:
+            here = k == j
+            out[here] = _piece(knot, tau[here])
+    return out
+
+
+def _shifts(epoch: Epoch, own: Floats) -> Floats:
+    """Helical shift of the slave (n,) at own positions (n, axes)."""
+    total = np.zeros(len(own))
+    for k, weight in epoch.weights.items():
+        total += weight * (own[:, k] - epoch.slides_start[k])
+    return total
+
+
+def _piece(knot: Straight | Round, tau: Floats) -> Floats:
+    """(n,) positions `tau` (n,) after the knot."""
+    if len(knot) == 3:
+        position, speed, half = knot
+        return position + tau * (speed + tau * half)
+    wave, angle, speed, half = knot
+    u = angle + tau * (speed + tau * half)
+    return wave.centre + wave.cosine * np.cos(u) + wave.sine * np.sin(u) + wave.rate * u

@@ -1,0 +1,1 @@
+"""What the controller knows as tables: alarms, codes, parameters, signals."""
