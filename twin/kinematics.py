@@ -7,14 +7,14 @@ so that everybody downstream sees them.
 
 # pyright: reportAttributeAccessIssue=false
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 import mujoco  # its bindings are compiled and carry no types
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutting.motion import CutterMotion
+from twin.cutting.motion import CutterMotion, RigidTransform
 
 Floats = NDArray[np.float64]
 
@@ -100,7 +100,9 @@ class Kinematics:
     tool: Chain
     """to the tool: Z = its axis u, X = where tool angle 0 points, origin = tool centre"""
     work: Chain
-    """to the part frame: Z = the spindle's axis, origin in the part's front face"""
+    """to the work frame: Z = the spindle's axis, origin in the front face of a part clamped without fault"""
+    mount: RigidTransform = field(default_factory=RigidTransform)
+    """part frame -> work frame: how the part is clamped"""
 
 
 def rotation_about(axis: Floats, angle: Floats) -> Floats:
@@ -203,6 +205,7 @@ def cutter_motion(kinematics: Kinematics, time_s: Floats, actual: Floats) -> Cut
         tool_angle=np.radians(actual[:, kinematics.tool.spindle.column]),
         centre=(centre - origin) @ work,
         basis=tool.T @ work,
+        mount=kinematics.mount,
     )
 
 

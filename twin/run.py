@@ -9,6 +9,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from controller.cnc import Controller
 from controller.language.source import load_program
 from controller.tables.alarms import as_json
@@ -103,7 +106,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
             taken = chips(blank, session.motions, progress=lambda _stage, share: tell.share(share))
     tell.stage("inspecting")
     with watch.measure("inspection"):
-        inspection = inspect(result.remains.vertices, result.remains.faces, job.nominal)
+        mesh = result.remains.vertices, result.remains.faces
+        if job.inspection.datum == "spindle":
+            mesh = ready.tools[0].kinematics.mount.moved(mesh[0]), mesh[1]
+        inspection = inspect(*mesh, job.nominal, own_axis=job.inspection.datum == "fit")
+        deviation = deviation_map(*mesh, inspection)
     outcome = Outcome(
         job=job,
         options=options,
@@ -117,11 +124,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     )
     tell.stage("writing the report")
     with result_folder(out) as folder:
-        _write(folder, outcome, watch)
+        _write(folder, outcome, deviation, watch)
     return outcome
 
 
-def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
+def _write(folder: Path, outcome: Outcome, deviation: NDArray[np.float64], watch: Stopwatch) -> None:
     remains, session, job = outcome.cut.remains, outcome.session, outcome.job
     with watch.measure("files"), ThreadPoolExecutor() as pool:
         mesh = remains.vertices, remains.faces
@@ -163,7 +170,6 @@ def _write(folder: Path, outcome: Outcome, watch: Stopwatch) -> None:
     )
     _json(folder / "provenance.json", origin)
     with watch.measure("report"):
-        deviation = deviation_map(remains.vertices, remains.faces, outcome.inspection)
         write_report(folder / "report.html", report_data(outcome, deviation, origin))
 
 

@@ -1,10 +1,11 @@
 """A job made ready to run: the machine as mounted, the controller's offsets, each tool's cutter."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
+from twin.faults.clamping import clamping
 from twin.inspection.nominal import GearNominal
 from twin.job.schema import Job, Tool
 from twin.kinematics import Kinematics, read_kinematics
@@ -71,7 +72,9 @@ def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
             edges=max(len(cutter.gash_angle), 1),
         )
         assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
-        kinematics = read_kinematics(assembly.model, assembly.joints)
+        kinematics = replace(
+            read_kinematics(assembly.model, assembly.joints), mount=clamping(job.faults, job.work.length_mm)
+        )
         tools.append(MountedTool(number=number, cutter=cutter, assembly=assembly, kinematics=kinematics))
     return Ready(
         spec=spec,

@@ -23,6 +23,10 @@ class RigidTransform:
     translation: Floats = field(default_factory=lambda: np.zeros(3))
     """(3,) [mm]"""
 
+    def moved(self, points: Floats) -> Floats:
+        """Points (n, 3) [mm] carried along."""
+        return points @ self.rotation.T + self.translation
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CutterMotion:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from twin.inspection.axis import straightened
 from twin.inspection.involute import geometry
 from twin.inspection.reading import Placed
 from twin.inspection.result import GearResult, Inspection, PolygonResult
@@ -29,6 +30,8 @@ def deviation_map(vertices: ArrayLike, faces: ArrayLike, inspection: Inspection)
 
     """
     solid = check_solid(vertices, faces)
+    if inspection.axis is not None:
+        solid = straightened(solid, inspection.axis)
     value = np.full(len(solid.vertices), np.nan)
     if inspection.gear is not None:
         _gear_map(solid, inspection.gear, value)

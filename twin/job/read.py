@@ -15,6 +15,7 @@ from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
+from twin.faults.table import Faults
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.job.locate import line_of
 from twin.job.schema import (
@@ -33,7 +34,7 @@ T = TypeVar("T")
 TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead, "disc_wheel": DiscWheel}
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
 MODELS = Path(models.__file__).parent
-TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection", "events")
+TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection", "faults", "events")
 
 
 def read_job(path: Path) -> Job:
@@ -101,6 +102,7 @@ class _Reader:
             program=self._program(),
             nominal=self._nominal(work, tools),
             inspection=self._table(InspectionTable, ("inspection",)),
+            faults=self._table(Faults, ("faults",)),
             events=self._events(),
         )
         model = job.machine.model

@@ -10,6 +10,7 @@ from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.cutting.blank import Blank
+from twin.faults.table import Faults
 from twin.inspection.nominal import Nominal
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -82,8 +83,9 @@ class SetupTable:
 class InspectionTable:
     """`[inspection]`"""
 
-    datum: Literal["band"] = "band"
-    """the blank's own axis"""
+    datum: Literal["band", "spindle", "fit"] = "band"
+    """measured about the blank's own axis, about the axis it turned about, or about the axis of its bore, or
+    else its tips, as found on the part"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,4 +115,5 @@ class Job:
     program: Path
     nominal: Nominal | None
     inspection: InspectionTable
+    faults: Faults = field(default_factory=Faults)
     events: tuple[EventTable, ...] = ()
