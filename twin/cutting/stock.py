@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
+from twin.cutting.snapping import snapped
 from twin.errors import PartError
 
 Floats = NDArray[np.float64]
@@ -65,10 +66,11 @@ class Remains:
     """What is left of the blank."""
 
     vertices: Floats
-    """(n, 3) [mm], part frame"""
+    """(n, 3) [mm], part frame, exact in single precision"""
     faces: Ints
     """(m, 3) counter-clockwise seen from outside"""
     volume_mm3: float
+    """before its vertices were rounded to single precision, as that of the blank"""
     blank_volume_mm3: float
     loose_volumes_mm3: tuple[float, ...]
     """of the pieces that the cut severed, largest first"""
@@ -86,9 +88,10 @@ def subtract(blank: Blank, surface: Surface | None) -> Remains:
     pieces = sorted(left.decompose(), key=lambda piece: -piece.volume())
     part = pieces[0]
     mesh = part.to_mesh64()
+    vertices, faces = snapped(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, dtype=np.int64))
     return Remains(
-        vertices=np.array(mesh.vert_properties[:, :3]),
-        faces=np.array(mesh.tri_verts, dtype=np.int64),
+        vertices=vertices,
+        faces=faces,
         volume_mm3=part.volume(),
         blank_volume_mm3=whole.volume(),
         loose_volumes_mm3=tuple(piece.volume() for piece in pieces[1:]),

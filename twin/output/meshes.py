@@ -31,21 +31,7 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 
 def write_stl(path: Path, vertices: Floats, faces: Ints) -> None:
     """Binary STL; vertices (n, 3) in mm."""
-    trimesh.Trimesh(*_in_single_precision(vertices, faces), process=False).export(path)
-
-
-def _in_single_precision(vertices: Floats, faces: Ints) -> tuple[NDArray[np.float32], Ints]:
-    """The mesh as STL can hold it: still closed where vertices fall together.
-
-    Triangles that lose their area go, and so do two that become each other's back.
-    """
-    places, number = np.unique(vertices.astype(np.float32), axis=0, return_inverse=True)
-    left = number.reshape(-1)[faces]
-    left = left[(left != np.roll(left, 1, axis=1)).all(axis=1)]
-    _, same = np.unique(np.sort(left, axis=1), axis=0, return_inverse=True)
-    odd = np.linalg.det(np.eye(3)[np.argsort(left, axis=1)]) < 0
-    balance = np.bincount(same.reshape(-1), np.where(odd, -1.0, 1.0))
-    return places, left[balance[same.reshape(-1)] != 0]
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
 
 
 def write_glb(path: Path, vertices: Floats, faces: Ints) -> None:

@@ -1,0 +1,105 @@
+"""A mesh on a grid so coarse that every file format tells its vertices apart as we do.
+
+STL and GLB hold single precision. Vertices that are apart only in double precision, as where ridges of
+neighbouring cells meet, fall together there and leave gaps and fins; here they are joined before anybody sees
+them. Where that would let four faces meet at one edge, the vertices are kept a grid step apart instead.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FINEST = 2.0**-17
+"""[mm] of the grid at least: 7.6 nm"""
+MANTISSA = 24
+"""bits of a number in single precision"""
+ROUNDS = 4
+"""of parting what may not be joined"""
+
+
+def grid_step(vertices: Floats) -> float:
+    """Step [mm] of a grid whose points single precision tells apart, in mm and in metres: a power of two.
+
+    Two units in the last place of the largest coordinate; in metres that unit is up to 1.95 times as large,
+    for 1000 is not quite 1024.
+    """
+    largest = float(np.abs(vertices).max(initial=0.0))
+    return max(2.0 ** (math.frexp(largest)[1] - MANTISSA + 1), FINEST)
+
+
+def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Move vertices (n, 3) [mm] onto the grid and join those that meet there; faces (m, 3).
+
+    Faces that lose a side go, and so do two that become each other's back: a closed 2-manifold stays one.
+    """
+    step = grid_step(vertices)
+    places = np.rint(vertices / step).astype(np.int64)
+    left, number, met = _joined(places, faces)
+    for _ in range(ROUNDS):
+        apart = np.isin(number, _of_shared_edges(left[met[left].any(axis=1)])) & met[number]
+        if not apart.any():
+            break
+        places[apart] += _towards_neighbours(vertices, faces)[apart]
+        left, number, met = _joined(places, faces)
+    first = np.zeros(len(met), dtype=np.int64)
+    first[number] = np.arange(len(number))
+    used = np.zeros(len(met), dtype=bool)
+    used[left] = True
+    return places[first[used]] * np.float64(step), (np.cumsum(used) - 1)[left]
+
+
+def _joined(places: Ints, faces: Ints) -> tuple[Ints, Ints, NDArray[np.bool_]]:
+    """The faces left when vertices at one place are one, the number of each vertex among the places, and
+    which numbers (k,) stand for more than one vertex."""
+    number = _numbers(places)
+    met = np.bincount(number) > 1
+    named = number[faces]
+    left = np.ones(len(faces), dtype=bool)
+    here = np.flatnonzero(met[named].any(axis=1))  # nothing changes elsewhere
+    left[here] = _stays(named[here])
+    return named[left], number, met
+
+
+def _numbers(places: Ints) -> Ints:
+    """(n,) the same number for the same place (n, 3)."""
+    number = np.zeros(len(places), dtype=np.int64)
+    for column in places.T:
+        # pairs: three coordinates of up to 25 bits do not fit one word
+        number = np.unique((number << 32) + (column + (1 << 31)), return_inverse=True)[1]
+    return number
+
+
+def _stays(faces: Ints) -> NDArray[np.bool_]:
+    """Whether a face has three vertices and no back: another on the same ones that looks the opposite way."""
+    a, b, c = faces.T
+    ordered = np.sort(faces, axis=1)
+    _, group = np.unique(ordered, axis=0, return_inverse=True)
+    turn = np.where(((a < b) & (b < c)) | ((b < c) & (c < a)) | ((c < a) & (a < b)), 1, -1)
+    balance = np.bincount(group.reshape(-1), turn)[group.reshape(-1)] if len(faces) else np.zeros(0)
+    return (np.diff(ordered, axis=1) > 0).all(axis=1) & (balance != 0)
+
+
+def _of_shared_edges(faces: Ints) -> Ints:
+    """Vertices of edges that more than one face passes in the same sense."""
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    vertices = faces.max(initial=0) + 1
+    passed, times = np.unique(start * vertices + end, return_counts=True)
+    return np.concatenate(np.divmod(passed[times > 1], vertices))
+
+
+def _towards_neighbours(vertices: Floats, faces: Ints) -> Ints:
+    """(n, 3) steps of −1, 0 or 1 from each vertex towards the middle of its faces.
+
+    Wedges of metal that touch are drawn apart by that, and so are wedges of air.
+    """
+    pull = np.zeros_like(vertices)
+    for corner in range(3):
+        to_middle = vertices[faces].mean(axis=1) - vertices[faces[:, corner]]
+        to_middle /= np.maximum(np.linalg.norm(to_middle, axis=1, keepdims=True), 1e-300)
+        for axis in range(3):
+            pull[:, axis] += np.bincount(faces[:, corner], to_middle[:, axis], len(vertices))
+    return np.rint(pull / np.maximum(np.abs(pull).max(axis=1, keepdims=True), 1e-300)).astype(np.int64)
