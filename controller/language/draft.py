@@ -102,6 +102,12 @@ class Draft:
             if gear and column in (gear.master, gear.slave):
                 self.refuse_in_sync(f"{name} of {word}", word)
 
+    def refuse_analogue(self, column: int, word: Word | None) -> None:
+        """PS0197 for a reference return, or the orientation, of a spindle without position control."""
+        if self.machine.axes[column].analogue:
+            found = f"{word} of {self.letter(column)}, an analogue spindle"
+            raise self.alarm("PS0197", found, word, valid="a servo axis (parameter 9005#0 = 0)")
+
     def letter(self, column: int) -> str:
         """Axis letter of a column."""
         return self.machine.axes[column].letter
@@ -121,6 +127,14 @@ class Draft:
                     raise self.alarm("PS5074", f"{word} beside {absolute[column]}", word)
                 incremental[column] = word
         return absolute, incremental
+
+    def check_together(self, words: Mapping[int, Word]) -> None:
+        """PS0015 for more axes than the control moves together."""
+        most = self.machine.together
+        if len(words) > most:
+            *_, last = sorted(words.values(), key=lambda word: word.column)
+            found = f"{last}, one of {len(words)} axes"
+            raise self.alarm("PS0015", found, last, valid=f"at most {most} axes in a block (parameter 9004)")
 
     def axis_value(self, column: int, word: Word) -> float:
         """The number of an axis word as slide travel [mm | deg]. PS5007 where it is too large."""

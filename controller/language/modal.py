@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from controller.laws.gearbox import GearBox
 from controller.tables.codes import POWER_ON, Group
 
+METRES_PER_FOOT = 0.3048
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SingleCycle:
@@ -69,7 +71,9 @@ class Modal:
     rpm: float = 0.0
     """S of G97, out of sync [rpm]"""
     surface_speed: float = 0.0
-    """S of G96 [m/min]"""
+    """S of G96 in programmed units"""
+    surface_inch: bool = False
+    """whether `surface_speed` counts feet per minute, else metres"""
     clamp: float = math.inf
     """G50 S [rpm]"""
     direction: int = 0
@@ -100,6 +104,11 @@ class Modal:
     def per_revolution(self) -> bool:
         """G99."""
         return self.codes[Group.FEED] == 990
+
+    @property
+    def surface_metres(self) -> float:
+        """S of G96 [m/min]: feet per minute in inch input (Fanuc lathe manuals, G96: m/min or feet/min)."""
+        return self.surface_speed * (METRES_PER_FOOT if self.surface_inch else 1.0)
 
     @property
     def constant_surface_speed(self) -> bool:

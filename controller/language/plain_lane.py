@@ -26,8 +26,8 @@ class PlainLane:
         self.modal = Modal()
         """as the last block left it"""
         self._calculator = machine.parameters.bit(3401, 0)
-        self._free = machine.pair is None
         columns = [k for k, axis in enumerate(machine.axes) if not axis.rotary]
+        self._free = machine.pair is None and machine.together >= len(columns)
         pattern, groups = _pattern([machine.axes[k].letter for k in columns], self._calculator)
         self._match = re.compile(pattern, re.ASCII).fullmatch
         self._axes = tuple(
@@ -36,6 +36,8 @@ class PlainLane:
         self._base = self.modal
         self._state: tuple[str, str | None] = ("0", None)
         self._feed: Feed | None = None
+        work = machine.work_spindle
+        self._measured = work is not None and machine.axes[work].encoder
         self._variants: dict[tuple[str, str | None], tuple[Modal, Feed | None]] = {}
 
     def enter(self, modal: Modal) -> bool:
@@ -100,7 +102,9 @@ class PlainLane:
             return None
         if not modal.per_revolution:
             return feed_per_minute(modal, linear=True)
-        return feed_per_revolution(modal, linear=True, measured=True) if modal.direction else None
+        if not (modal.direction and self._measured):
+            return None
+        return feed_per_revolution(modal, linear=True, measured=True)
 
 
 _INCREMENTS = frozenset(INCREMENT_LETTER.values())

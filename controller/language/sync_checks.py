@@ -9,13 +9,15 @@ from controller.laws.gearbox import SyncKind
 
 
 def check_axes(draft: Draft, absolute: Mapping[int, Word], incremental: Mapping[int, Word]) -> None:
-    """PS1595 and PS0220 in sync, PS0197 for a spindle, PS0224 for an axis that does not know where it is."""
-    motion = draft.motion
-    for column, word in {**absolute, **incremental}.items():
+    """PS0015 for too many axes, PS1595 and PS0220 in sync, PS0197 for a spindle, PS0224 for an axis that does
+    not know where it is."""
+    motion, words = draft.motion, {**absolute, **incremental}
+    draft.check_together(words)
+    for column, word in words.items():
         _check_sync(draft, column, word, absolute=column in absolute)
         if column in motion.spindles.free or (column == draft.machine.work_spindle and _spindle_mode(draft)):
             found = f"{word} after the axis has turned as a spindle"
-            raise draft.alarm("PS0197", found, word, valid=f"{orientation(draft, column)} before the block")
+            raise draft.alarm("PS0197", found, word, valid=orientation(draft, column))
         motion.references.require(column, draft.letter(column), draft.block.place(word))
 
 

@@ -51,12 +51,12 @@ class ManualMotion(Turning):
             case OperatorAction.SPINDLE_OVERRIDE:
                 self._set_spindle_override(event)
             case OperatorAction.MACHINE_LOCK if event.axis:
-                self._signal(f"MLK{event.axis}", event.on)
+                self._signal(event, f"MLK{event.axis}")
             case OperatorAction.MACHINE_LOCK:
                 panel.locked = event.on
                 self._version += 1
             case OperatorAction.SIGNAL:
-                self._signal(event.text, event.on)
+                self._signal(event, event.text)
             case OperatorAction.JOG | OperatorAction.REFERENCE_RETURN | OperatorAction.MDI:
                 self._ask_by_hand(event)
             case _:
@@ -82,8 +82,17 @@ class ManualMotion(Turning):
         else:
             self.panel.running = True
 
-    def _signal(self, name: str, level: bool) -> None:
+    def _signal(self, event: OperatorEvent, name: str) -> None:
+        """A signal of the machine. Master and slave of a gear box keep their servos and stay attached."""
+        level, gear = event.on, self.coupling.gear
+        before, held = self.panel.inputs, {gear.master, gear.slave} if gear else set[int]()
         self.panel.set_signal(name, level)
+        for kind in (AxisInput.DETACH, AxisInput.SERVO_OFF):
+            gone = self.panel.inputs.columns(kind) - before.columns(kind)
+            if gear and gone & held:
+                self.panel.inputs = before
+                self._no_effect(event, f"in {gear.kind.value}", "the end of sync before it: G80 or G50.2")
+                return
         self.take_signals()
         if name.startswith(_PLANNED_ANEW):
             self._version += 1
@@ -134,6 +143,8 @@ class ManualMotion(Turning):
             self._warn(Alarm(number="HT9123", found=f"{event} with {names}", span=self._span))
         if self.references.states[axis] is Reference.DETACHED:
             self._no_effect(event, "of a detached axis", f"signal DTCH{event.axis}=0 before it")
+        elif self.machine.axes[axis].analogue:
+            self._no_effect(event, "of an analogue spindle", f"parameter 9005#0.{event.axis} = 0")
         elif self.timeline.tracks[axis].speed(self.time) != 0.0:
             self._no_effect(event, "while the axis turns as a spindle", "the spindle at standstill")
         elif event.action is OperatorAction.JOG:

@@ -7,7 +7,7 @@ an inclined pair and under machine lock.
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from controller.laws.segments import Phase, Track
 from controller.laws.stroke_area import Crossing
@@ -36,7 +36,7 @@ class Path:
     """of the state of the machine that the path was planned for"""
     commanded: Collection[int]
     """columns that the program moves"""
-    end: float
+    end: float = field(init=False)
     """path position where the motion stops: `length` unless a stroke limit is in the way"""
     crossing: Crossing | None
     exact: Travel
@@ -47,6 +47,9 @@ class Path:
     """path position that the displays show"""
     slowed: bool = False
     """an axis limit has been reported"""
+
+    def __post_init__(self) -> None:
+        self.end = self.length
 
 
 @dataclass(slots=True, kw_only=True)

@@ -1,7 +1,8 @@
 """Paths are built here: from program terms to slides, with the limits that hold for them now."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 from controller.laws.gearbox import SyncKind
 from controller.laws.inclined import InclinedPair
@@ -24,6 +25,10 @@ from controller.tables.signals import AxisInput
 _OVER_SPEED = {SyncKind.HOBBING: "PS1596", SyncKind.POLYGON: "PS5018"}
 _REACHED = 1e-6
 """[mm | deg] within which a commanded end is reached"""
+
+
+_T = TypeVar("_T")
+"""what a slide does: a travel, or a coordinate of an arc"""
 
 
 class Paths(Axes):
@@ -127,18 +132,10 @@ class Paths(Axes):
         mapped = slides is None
         slides = self._slides(program) if slides is None else slides
         top, rate = straight_limits(self.machine.axes, slides, length, rapid=rapid)
-        machine = program
-        if locked := self._locked():
-            slides = {k: d for k, d in slides.items() if k not in locked}
-        if locked or self._mirrored():
-            machine = self._cartesian(slides)
+        slides, machine = self._carried_out(program, slides, self._cartesian)
         if self.timeline.epochs:
             top, rate = self._spare(slides, length, top, rate)
-            top = self._beside_sync(slides, length, top)
-        base = self.timeline.own(self.time)
-        travel = [0.0] * len(base)
-        for k, d in slides.items():
-            travel[k] = d
+        base, travel = self._from_here(slides)
         return StraightPath(
             length=length,
             top_speed=top,
@@ -147,7 +144,6 @@ class Paths(Axes):
             rapid=rapid,
             version=self._version,
             commanded=program.keys(),
-            end=length,
             crossing=self.limits.before_motion(base, travel) or self.limits.straight(base, travel),
             exact=exact or {},
             places=places or {},
@@ -173,15 +169,8 @@ class Paths(Axes):
             return None
         slides = self._slide_waves(program)
         top, rate = arc_limits(self.machine.axes, slides, radius, wanted)
-        machine = program
-        if locked := self._locked():
-            slides = {k: wave for k, wave in slides.items() if k not in locked}
-        if locked or self._mirrored():
-            machine = self._cartesian_waves(slides)
-        base = self.timeline.own(self.time)
-        travel = [0.0] * len(base)
-        for k, wave in slides.items():
-            travel[k] = wave.at(sweep)
+        slides, machine = self._carried_out(program, slides, self._cartesian_waves)
+        base, travel = self._from_here({k: wave.at(sweep) for k, wave in slides.items()})
         there = {k: wave.plus(Wave(base[k]), 1.0) for k, wave in slides.items()}
         path = ArcPath(
             length=length,
@@ -191,7 +180,6 @@ class Paths(Axes):
             rapid=False,
             version=self._version,
             commanded=program.keys(),
-            end=length,
             crossing=self.limits.before_motion(base, travel) or self.limits.arc(base, there, sweep),
             exact=exact or {},
             places=places or {},
@@ -205,6 +193,27 @@ class Paths(Axes):
         path.top_speed, path.acceleration = self._spare(path.shares, 1.0, top, rate)
         return path
 
+    def _carried_out(
+        self,
+        program: Mapping[int, _T],
+        slides: Mapping[int, _T],
+        cartesian: Callable[[Mapping[int, _T]], Mapping[int, _T]],
+    ) -> tuple[Mapping[int, _T], Mapping[int, _T]]:
+        """The motion of the slides without those that stand locked, and what it is in Cartesian machine
+        terms: that of the program, but under machine lock and mirror image."""
+        locked = self._locked()
+        if locked:
+            slides = {k: motion for k, motion in slides.items() if k not in locked}
+        return slides, cartesian(slides) if locked or self._mirrored() else program
+
+    def _from_here(self, slides: Travel) -> tuple[list[float], list[float]]:
+        """(axes,) positions of the tracks, and the way of every slide from there."""
+        base = self.timeline.own(self.time)
+        travel = [0.0] * len(base)
+        for k, way in slides.items():
+            travel[k] = way
+        return base, travel
+
     def _spare(self, slides: Travel, length: float, top: float, rate: float) -> tuple[float, float]:
         """Path limits at which the helical shift does not drive the slave beyond its own limits, either."""
         epoch = self.timeline.coupling
@@ -214,28 +223,43 @@ class Paths(Axes):
         slave = self.machine.axes[epoch.gear.slave]
         return min(top, slave.rapid * length / shift), min(rate, slave.acceleration * length / shift)
 
-    def _beside_sync(self, slides: Travel, length: float, top: float) -> float:
-        """Path speed that leaves the slave within its limit together with what the master makes it turn.
+    def _top(self, path: AnyPath, speed: float) -> float:
+        """Path speed that leaves the slave within its limit together with what the master makes it turn now
+        and when it has its commanded speed; on an arc wherever the helical shift is steepest.
 
-        Raises PS1596, PS5018 where the master alone takes it there.
+        Raises PS1596, PS5018 where the master alone takes it there; a path under way (`speed` > 0) is to stop
+        first.
         """
         epoch = self.timeline.coupling
         if epoch is None:
-            return top
-        gear = epoch.gear
-        shift = slides.get(gear.slave, 0.0) + sum(w * slides.get(k, 0.0) for k, w in epoch.weights.items())
-        master, slave = self.timeline.tracks[gear.master], self.machine.axes[gear.slave]
+            return path.top_speed
+        gear, shift = epoch.gear, self._shift(path)
+        slave, master = self.machine.axes[gear.slave], self.timeline.tracks[gear.master]
         moments = (self.time, self.spindles.ready(gear.master, self.time))
-        turning = max(math.copysign(1.0, shift) * gear.ratio * master.speed(moment) for moment in moments)
+        rates = [gear.ratio * master.speed(moment) for moment in moments]
+        ahead = max(math.copysign(rate, shift * rate) for rate in rates)
+        turning = max(map(abs, rates)) if isinstance(path, ArcPath) else ahead
         if abs(shift) < NOTHING or turning <= 0.0:
-            return top
+            return path.top_speed
         limit = slave.spindle_max * DEG_PER_S
         spare = limit - turning
-        if spare < limit * NOTHING:
-            found = f"a motion of {slave.letter} beside {turning / DEG_PER_S:.0f} rpm in sync"
-            valid = f"S that leaves {slave.letter} below its {slave.spindle_max:.0f} rpm"
-            raise alarm(_OVER_SPEED[gear.kind], found, self._span, valid=valid)
-        return min(top, spare * length / abs(shift))
+        if spare >= limit * NOTHING:
+            return min(path.top_speed, spare / abs(shift))
+        if speed > 0.0:
+            return 0.0
+        found = f"a motion of {slave.letter} beside {turning / DEG_PER_S:.0f} rpm in sync"
+        valid = f"S that leaves {slave.letter} below its {slave.spindle_max:.0f} rpm"
+        raise alarm(_OVER_SPEED[gear.kind], found, self._span, valid=valid)
+
+    def _shift(self, path: AnyPath) -> float:
+        """What a path turns the slave, by itself and by the helical shift, per path [deg/mm]; of an arc the
+        most it can be anywhere."""
+        epoch, shares = self.timeline.coupling, path.shares
+        if epoch is None:
+            return 0.0
+        own = shares.get(epoch.gear.slave, 0.0)
+        parts = [own, *(w * shares.get(k, 0.0) for k, w in epoch.weights.items())]
+        return sum(map(abs, parts)) if isinstance(path, ArcPath) else sum(parts)
 
     def _rest(self, path: AnyPath, position: float) -> AnyPath | None:
         """What is left of a path behind a position, for the machine as it is now, parallel to the old one."""

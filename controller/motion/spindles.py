@@ -32,9 +32,12 @@ class Spindles:
     arrival: dict[int, float] = field(default_factory=dict)
     """column -> time [s] at which the commanded speed is reached"""
     free: set[int] = field(default_factory=set)
-    """columns that have turned as a spindle and not been oriented since (PS0197)"""
+    """columns that have turned as a spindle and not been oriented since (PS0197); analogue ones for ever"""
     surface: SurfaceSpeed | None = None
     override: float = 1.0
+
+    def __post_init__(self) -> None:
+        self.free.update(k for k, axis in enumerate(self.machine.axes) if axis.analogue)
 
     def turn(
         self,

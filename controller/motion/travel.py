@@ -108,11 +108,12 @@ class Travelling(Settling):
         """Where a stroke limit ends the path."""
         crossing = path.crossing
         if crossing:
-            wanted = path.top_speed if feed is None or feed.per_revolution else feed.value
+            top = self._top(path, path.top_speed)
+            wanted = top if feed is None or feed.per_revolution else feed.value
             end = stopping_point(
                 path.length,
                 crossing.fraction * path.length,
-                min(wanted, path.top_speed),
+                min(wanted, top),
                 path.acceleration,
                 before=crossing.before,
             )
@@ -175,19 +176,20 @@ class Travelling(Settling):
         try:
             if self._by_encoder(on_way.feed):
                 yield from self._measure(on_way.gauge)
-            wanted, until = self._pace(path, on_way.feed, on_way.manner, on_way.gauge)
+            wanted, until = self._pace(on_way, self._top(path, on_way.speed))
         except AlarmError:
             path.stop(self.timeline.tracks, on_way.position, self.time)
             self._settle(path, on_way.position)
             raise
         return wanted, until, ""
 
-    def _pace(self, path: AnyPath, feed: Feed | None, manner: Manner, gauge: Gauge) -> tuple[float, float]:
-        """The path speed that is wanted now [1/s], and until when that holds [s]."""
+    def _pace(self, on_way: "_OnWay", top: float) -> tuple[float, float]:
+        """The path speed that is wanted now [1/s], at most `top`, and until when that holds [s]."""
+        path, feed, manner, gauge = on_way.path, on_way.feed, on_way.manner, on_way.gauge
         until = math.inf
         panel = self.panel
         if feed is None:
-            return self._rapid(path), until
+            return self._rapid(path, top), until
         if manner in (Manner.THREAD, Manner.BY_HAND):
             wanted = feed.value
         elif panel.dry_run:
@@ -197,11 +199,11 @@ class Travelling(Settling):
             wanted = feed.value * turns * panel.feed_override
         else:
             wanted = feed.value * panel.feed_override
-        if wanted > path.top_speed:
-            if wanted > path.top_speed * _SLOWED and not path.slowed:
+        if wanted > top:
+            if wanted > top * _SLOWED and not path.slowed:
                 path.slowed = True
-                self._warn_slowed(wanted, path.top_speed)
-            wanted = path.top_speed
+                self._warn_slowed(wanted, top)
+            wanted = top
         return wanted, until
 
     @property
@@ -209,13 +211,14 @@ class Travelling(Settling):
         """Parameter 1410 [1/s]."""
         return self.machine.parameters.number(1410) / 60.0
 
-    def _rapid(self, path: AnyPath) -> float:
+    def _rapid(self, path: AnyPath, top: float) -> float:
         """Rapid speed by its override; F0 is the speed of parameter 1421."""
         override = self.panel.rapid_override
         if override > 0.0:
-            return path.top_speed * override
+            return top * override
         number, axes = self.machine.parameters.number, self.machine.parameters.letters
-        return min(number(1421, axes[k]) / 60.0 / abs(share) for k, share in path.shares.items() if share)
+        slowest = min(number(1421, axes[k]) / 60.0 / abs(share) for k, share in path.shares.items() if share)
+        return min(top, slowest)
 
     def _warn_slowed(self, wanted: float, top: float) -> None:
         possible = f"{top * 60.0:.0f}" if top * 60.0 >= 10.0 else f"{top * 60.0:.3g}"

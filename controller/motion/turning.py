@@ -9,7 +9,8 @@ from controller.motion.path import NOTHING, AnyPath, Travel
 from controller.motion.requests import Steps
 from controller.motion.spindles import DEG_PER_S
 from controller.motion.travel import Travelling
-from controller.tables.alarms import Alarm
+from controller.tables.alarms import Alarm, alarm
+from controller.tables.signals import AxisInput
 
 
 class Turning(Travelling):
@@ -25,10 +26,18 @@ class Turning(Travelling):
         if gear is None or axis != gear.master:
             spindles.turn(axis, rpm, self.time)
             return
-        ramp, before = coupling.ramp(), abs(self.timeline.tracks[axis].speed(self.time))
+        ramp, before = self._ramp(), abs(self.timeline.tracks[axis].speed(self.time))
         ready = spindles.turn(axis, rpm, self.time, ramp, highest=coupling.highest)
         after = abs(self.timeline.tracks[axis].speed(ready))
         coupling.note_peaks(max(before, after), ramp or 0.0)
+
+    def _ramp(self) -> float | None:
+        """Acceleration of the master that the slave can follow, beside a path that slows down for it, too."""
+        ramp, path, epoch = self.coupling.ramp(), self._underway, self.timeline.coupling
+        if ramp is None or path is None or epoch is None:
+            return ramp
+        shift = abs(self._shift(path))
+        return min(ramp, path.acceleration * shift / abs(epoch.gear.ratio)) if shift > NOTHING else ramp
 
     def _spindle(self, command: SpindleSpeed) -> Steps[None] | None:
         gear, axis = self.coupling.gear, command.axis
@@ -38,7 +47,14 @@ class Turning(Travelling):
             self.spindles.surface = None
         self._turn(command.axis, command.rpm)
         self.note_extents()
-        return self._ready(command.axis) if command.wait else None
+        return self._come_to_rest(axis) if command.wait else None
+
+    def _come_to_rest(self, axis: int) -> Steps[None]:
+        """Wait for a spindle to stand; out of sync the display shows where (in sync G80 counts it)."""
+        yield from self._ready(axis)
+        if self.coupling.gear is None:
+            self.registers.orient(axis, self.timeline.positions(self.time)[axis])
+            self.note_extents()
 
     def _surface_speed(self, command: SurfaceSpeed) -> None:
         axis = command.axis
@@ -73,6 +89,7 @@ class Turning(Travelling):
     def _couple(self, command: Couple) -> Steps[None]:
         """Close an older engagement, turn the master by R, engage."""
         gear, old = command.gear, self.coupling.gear
+        self._require_servos(gear)
         sensor = (yield from self._encoders()) if old and old.follow else None
         before = self.coupling.close(self.time, sensor, self._line)
         if command.phase:
@@ -84,6 +101,15 @@ class Turning(Travelling):
         if abs(jump) > NOTHING:
             found = f"a jump of {jump:+.3f} rpm"
             self._warn(Alarm(number="HT9100", found=found, span=self._span))
+
+    def _require_servos(self, gear: GearBox) -> None:
+        """PS0197: the axes of a gear box are in position control, an analogue master apart."""
+        off = self.panel.inputs.columns(AxisInput.SERVO_OFF)
+        for column in (gear.master, gear.slave):
+            if column in off:
+                letter = self.machine.axes[column].letter
+                found = f"{letter} with its servo off"
+                raise alarm("PS0197", found, self._span, valid=f"signal SVF{letter} = 0")
 
     def _note_turning(self, gear: GearBox) -> None:
         self.coupling.note_peaks(abs(self.timeline.tracks[gear.master].speed(self.time)), 0.0)

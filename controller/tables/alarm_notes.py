@@ -29,6 +29,7 @@ PS0007 | §1, Numbers | | two decimal points, or one where an integer is due
 PS0009 | §1 | | a word that means nothing in its block: nothing is ever ignored
 PS0010 | §1, G codes | | a G code that this controller does not have
 PS0011 | §1, Addresses | G01 G02 G03 | a cutting move without a feed
+PS0015 | §1 | G00 G01 G02 G03 G28 G30 G53 | more axes than the control moves together (parameter 9004)
 PS0020 | §1 | G02 G03 | the end point is not on the circle (parameter 3410)
 PS0021 | §1 | G02 G03 G17 G19 | the plane holds a rotary axis, or one that this machine does not have
 PS0022 | §1 | G02 G03 | an arc with neither R nor I, J, K

@@ -62,6 +62,7 @@ PS0007 | ILLEGAL USE OF DECIMAL POINT | one point, and only where the address ta
 PS0009 | IMPROPER NC-ADDRESS | an address of this machine
 PS0010 | IMPROPER G-CODE | a G code of this controller
 PS0011 | FEED ZERO (COMMAND) | F greater than 0 before or in the block
+PS0015 | TOO MANY SIMULTANEOUS AXES | fewer axes in the block, or a greater parameter 9004
 PS0020 | OVER TOLERANCE OF RADIUS | an end on the circle, or a greater parameter 3410
 PS0021 | ILLEGAL PLANE SELECT | a plane of two linear axes: G18 on this lathe
 PS0022 | R OR I,J,K COMMAND NOT FOUND | R, or the centre by the I J K of the plane

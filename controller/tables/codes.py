@@ -98,7 +98,7 @@ _ROWS = (
     (740, "00", "RUNS", "peck drilling along Z", _RULINGS),
     (750, "00", "RUNS", "grooving along X", _RULINGS),
     (760, "00", "RUNS", "multiple threading cycle", _RULINGS),
-    (960, "02", "RUNS", "constant surface speed", _RULINGS),
+    (960, "02", "RUNS", "constant surface speed: S in m/min, in inch input ft/min", _RULINGS),
     (970, "02", "RUNS", "spindle speed in rpm", _RULINGS),
     (220, "04", "RUNS", "stored stroke check 2 on", _RULINGS),
     (230, "04", "RUNS", "stored stroke check 2 off", _RULINGS),

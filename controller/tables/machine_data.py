@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from controller.laws.inclined import InclinedPair, in_dead_band
 from controller.tables.alarms import alarm
-from controller.tables.parameters import SWITCHES, Parameters
+from controller.tables.parameter_table import SWITCHES
+from controller.tables.parameters import Parameters
 
 INCREMENT_LETTER = {"X": "U", "Z": "W", "Y": "V", "C": "H"}
 """axis letter -> letter of its increments (rulings, section 1, Addresses)"""
@@ -39,6 +40,10 @@ class Axis:
     """[mm/s² | deg/s²]"""
     spindle_max: float
     """highest speed as a spindle [rpm]; 0 = none"""
+    analogue: bool = False
+    """turns by S alone, without position control (parameter 9005#0)"""
+    encoder: bool = True
+    """its position and speed are measured (parameter 9005#1)"""
 
     @property
     def factor(self) -> float:
@@ -80,6 +85,8 @@ class MachineData:
     position_switches: tuple[PositionSwitch, ...]
     """those that have an axis"""
     parameters: Parameters
+    together: int
+    """most axes that one block may move together (parameter 9004)"""
 
     @property
     def letters(self) -> tuple[str, ...]:
@@ -112,6 +119,7 @@ def machine_data(parameters: Parameters) -> MachineData:
         tool_spindle=_rotary_column(axes, parameters.integer(9002)),
         position_switches=_position_switches(parameters, axes),
         parameters=parameters,
+        together=parameters.integer(9004),
     )
 
 
@@ -128,6 +136,10 @@ def _axis(parameters: Parameters, column: int, letter: str) -> Axis:
         raise alarm(
             "HT9005", f"1320.{letter} not above 1321.{letter}", valid="a plus limit above the minus limit"
         )
+    analogue = parameters.bit(9005, 0, letter)
+    if analogue and not rotary:
+        valid = "a rotary axis as analogue spindle"
+        raise alarm("HT9005", f"9005#0.{letter} = 1, a linear axis", valid=valid)
     return Axis(
         letter=chr(parameters.integer(1020, letter)),
         number=column + 1,
@@ -143,6 +155,8 @@ def _axis(parameters: Parameters, column: int, letter: str) -> Axis:
         cutting=parameters.number(1430, letter) / 60.0,
         acceleration=parameters.number(1660, letter),
         spindle_max=parameters.number(3772, letter) if rotary else 0.0,
+        analogue=analogue,
+        encoder=parameters.bit(9005, 1, letter),
     )
 
 

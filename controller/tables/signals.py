@@ -12,7 +12,7 @@ from enum import Enum
 
 from controller.laws.inclined import Frame
 from controller.tables.alarms import Alarm, ControllerError
-from controller.tables.parameters import SWITCHES
+from controller.tables.parameter_table import SWITCHES
 
 
 class Direction(Enum):

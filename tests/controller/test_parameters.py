@@ -2,7 +2,8 @@ import pytest
 
 from controller.tables.alarms import AlarmError, ControllerError
 from controller.tables.machine_data import machine_data
-from controller.tables.parameters import PARAMETERS, delivered
+from controller.tables.parameter_table import PARAMETERS
+from controller.tables.parameters import delivered
 
 
 def test_delivered_setups() -> None:

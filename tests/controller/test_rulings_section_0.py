@@ -7,7 +7,8 @@ import pytest
 from controller.language.offsets import Offsets
 from controller.tables.codes import POWER_ON, g_name
 from controller.tables.machine_data import machine_data
-from controller.tables.parameters import PARAMETERS, delivered
+from controller.tables.parameter_table import PARAMETERS
+from controller.tables.parameters import delivered
 
 INCLINED = {"8200#0": 1}
 

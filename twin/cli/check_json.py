@@ -36,6 +36,7 @@ def _object(result: CheckResult) -> dict[str, object]:
         "warnings": [_message(one) for one in result.warnings],
         "read_on": len(result.read_on),
         "cycle_time_s": round(run.cycle_time_s, _DIGITS),
+        "units": {"linear": "mm", "rotary": "deg"},
         "final": {
             "absolute": dict(run.absolute),
             "relative": dict(run.relative),

@@ -106,7 +106,7 @@ def _source(result: CheckResult, line: int) -> tuple[str, str]:
 
 def _end(result: CheckResult) -> Iterator[tuple[str, ...]]:
     run = result.run
-    yield "at the end", *run.absolute
+    yield "at the end, mm | deg", *run.absolute
     for name, values in (("absolute", run.absolute), ("relative", run.relative), ("machine", run.machine)):
         # what rounds up to a whole turn stands at its beginning
         shown = (0.0 if k in run.turns and value > TURN - 5e-4 else value for k, value in values.items())

@@ -2,14 +2,9 @@
 
 from collections.abc import Iterator
 
-from controller.tables.parameters import (
-    PARAMETERS,
-    SETUPS,
-    ParameterEntry,
-    ParameterKind,
-    Parameters,
-    delivered,
-)
+from controller.tables.delivered import SETUPS
+from controller.tables.parameter_table import PARAMETERS, ParameterEntry, ParameterKind
+from controller.tables.parameters import Parameters, delivered
 from twin.manual.entry import Chapter, Entry
 
 

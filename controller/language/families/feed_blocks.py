@@ -57,6 +57,8 @@ def feed_in_force(draft: Draft, columns: Iterable[int]) -> Feed:
         return feed_per_minute(modal, linear=linear)
     check_turning(draft, f"F{modal.feed:g} by G99")
     measured = modal.gear is None or not draft.machine.parameters.bit(201, 2)
+    if measured:
+        check_encoder(draft, f"F{modal.feed:g} by G99")
     return feed_per_revolution(modal, linear=linear, measured=measured)
 
 
@@ -71,6 +73,16 @@ def check_turning(draft: Draft, what: str) -> None:
         still, cause = not (modal.direction or turns), "the work spindle stands still"
     if still:
         raise draft.alarm("HT9007", f"{what}, {cause}", draft.code_word(modal.codes[Group.MOTION]))
+
+
+def check_encoder(draft: Draft, what: str) -> None:
+    """HT9005 for a motion bound to the measured speed or angle of a work spindle without encoder."""
+    work = draft.machine.work_spindle
+    if work is not None and not draft.machine.axes[work].encoder:
+        letter = draft.letter(work)
+        place = draft.code_word(draft.modal.codes[Group.MOTION])
+        valid = f"an encoder: parameter 9005#1.{letter} = 1"
+        raise draft.alarm("HT9005", f"{what}, the work spindle {letter} has no encoder", place, valid=valid)
 
 
 def lead_in_force(draft: Draft) -> float:

@@ -71,7 +71,9 @@ def _reference_return(draft: Draft) -> None:
         valid = f"the axes to return, as in {name} U0 W0"
         raise draft.alarm("HT9012", f"{name} without axis", word, valid=valid)
     draft.refuse_sync_axes(words, name)
+    draft.check_together(words)
     for column, one in words.items():
+        draft.refuse_analogue(column, one)
         turned = column in draft.motion.spindles.free
         if turned and (column in absolute or draft.axis_value(column, one) != 0.0):
             letter = draft.letter(column)

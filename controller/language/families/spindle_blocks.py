@@ -37,6 +37,7 @@ def interpret_spindle(draft: Draft) -> None:
         draft.modal = replace(draft.modal, direction=_DIRECTION[number])
     if number == 19:
         work = _work_spindle(draft)
+        draft.refuse_analogue(work, draft.block.m_word)
         draft.commands.append(ReferenceReturn(axes=(work,), span=draft.block.span))
     elif number in (3, 4) or (draft.modal.direction and (word or G96 in draft.block.codes)):
         _turn(draft, word)
@@ -75,7 +76,7 @@ def _clamp(draft: Draft, word: Word) -> None:
 def _speed(draft: Draft, word: Word) -> None:
     value = float(draft.reader.natural(word))
     if draft.modal.constant_surface_speed:
-        draft.modal = replace(draft.modal, surface_speed=value)
+        draft.modal = replace(draft.modal, surface_speed=value, surface_inch=draft.reader.inch)
         return
     top = draft.machine.axes[_work_spindle(draft)].spindle_max
     if value > top:
@@ -86,7 +87,7 @@ def _speed(draft: Draft, word: Word) -> None:
 def _turn(draft: Draft, word: Word | None) -> None:
     modal = draft.modal
     work = _work_spindle(draft)
-    value = modal.surface_speed if modal.constant_surface_speed else modal.rpm
+    value = modal.surface_metres if modal.constant_surface_speed else modal.rpm
     if value == 0.0:
         name = draft.block.m_code.name if draft.block.m_code else "S0"
         raise draft.alarm(

@@ -230,27 +230,39 @@ def _axial_axis(draft: Draft, word: Word | None) -> int:
 
 def _engage(draft: Draft, command: Couple, word: Word | None) -> None:
     motion, gear = draft.motion, command.gear
+    _check_drives(draft, gear, word)
     if draft.modal.gear is None:
         for column in (gear.master, gear.slave):
             if motion.spindles.turning(column, motion.time):
                 raise draft.alarm("HT9008", f"{draft.letter(column)} turns out of sync", word)
             if column in motion.spindles.free and not (gear.follow and column == gear.master):
-                valid = f"{orientation(draft, column)} before the block"
-                raise draft.alarm(
-                    "PS0197", f"{draft.letter(column)} not in position control", word, valid=valid
-                )
+                found = f"{draft.letter(column)} not in position control"
+                raise draft.alarm("PS0197", found, word, valid=orientation(draft, column))
     _check_slave_speed(draft, gear, draft.modal.sync_rpm, word)
     draft.modal = replace(draft.modal, gear=gear)
     draft.set_code(*_ON[gear.kind])
     draft.commands.append(command)
 
 
+def _check_drives(draft: Draft, gear: GearBox, word: Word | None) -> None:
+    """PS1593: the slave is a servo axis; a measured master has an encoder (rulings, section 2)."""
+    slave, master = draft.machine.axes[gear.slave], draft.machine.axes[gear.master]
+    if slave.analogue:
+        found = f"{slave.letter}, the slave axis, an analogue spindle"
+        raise draft.alarm("PS1593", found, word, valid=f"a servo axis: parameter 9005#0.{slave.letter} = 0")
+    if gear.follow and not master.encoder:
+        found = f"{master.letter}, the master axis of the follow type, without an encoder"
+        raise draft.alarm("PS1593", found, word, valid=f"an encoder: parameter 9005#1.{master.letter} = 1")
+
+
 def orientation(draft: Draft, column: int) -> str:
     """What takes a rotary axis back to position control."""
-    if column == draft.machine.work_spindle:
-        return "M19 or G28 H0"
     letter = draft.letter(column)
-    return f"G28 {INCREMENT_LETTER[letter]}0" if letter in INCREMENT_LETTER else f"G28 {letter}0"
+    if draft.machine.axes[column].analogue:
+        return f"a servo axis: {letter} is an analogue spindle (parameter 9005#0)"
+    if column == draft.machine.work_spindle:
+        return "M19 or G28 H0 before the block"
+    return f"G28 {INCREMENT_LETTER.get(letter, letter)}0 before the block"
 
 
 def _check_slave_speed(draft: Draft, gear: GearBox, rpm: float, word: Word | None) -> None:

@@ -2,7 +2,7 @@
 
 from controller.commands import Thread
 from controller.language.draft import Draft
-from controller.language.families.feed_blocks import check_turning, lead_in_force
+from controller.language.families.feed_blocks import check_encoder, check_turning, lead_in_force
 from controller.language.sync_checks import check_axes
 from controller.motion.registers import TURN
 
@@ -44,3 +44,4 @@ def check_thread(draft: Draft) -> None:
     """A thread needs a turning work spindle that belongs to it alone: HT9007, in sync PS1595 or PS0220."""
     draft.refuse_in_sync("thread cutting")
     check_turning(draft, "a thread")
+    check_encoder(draft, "a thread")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from controller.language import source
 from controller.language.source import load_program, parse_program
 from controller.tables.alarms import AlarmError
 
@@ -99,9 +100,7 @@ def test_strange_files(read, tmp_path: Path, data: bytes, number: str) -> None:
 
 def test_devices_and_large_files_end(monkeypatch, tmp_path: Path) -> None:
     """A file without end is refused at the limit (here 1 KiB, as delivered 256 MiB)."""
-    import controller.language.source
-
-    assert controller.source.LARGEST_FILE == 256 * 2**20
-    monkeypatch.setattr(controller.source, "LARGEST_FILE", 1024)
+    assert source.LARGEST_FILE == 256 * 2**20
+    monkeypatch.setattr(source, "LARGEST_FILE", 1024)
     with pytest.raises(AlarmError, match="a very large file"):
         load_program("/dev/zero")

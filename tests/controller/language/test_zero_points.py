@@ -142,3 +142,11 @@ def test_surface_speed_with_its_clamp(read) -> None:
     assert (bare.speed, bare.clamp) == (150.0, 2000.0)
     (clamped,) = read("G50 S800\nG96 S150 M04\nM30").of(SurfaceSpeed)
     assert (clamped.speed, clamped.clamp) == (-150.0, 800.0)
+
+
+def test_surface_speed_in_feet(read) -> None:
+    """In inch input S of G96 counts feet per minute, 0.3048 m: S300 is 91.44 m/min. #4119 shows it as it was
+    programmed; G21 alone does not make metres of it, the next S does."""
+    reading = read("G20 G96 S300 M03\nG21\nM04\nG00 Z#4119\nS300\nM30")
+    assert [one.speed for one in reading.of(SurfaceSpeed)] == pytest.approx([91.44, -91.44, -300.0])
+    assert reading.absolute["Z"] == 300.0

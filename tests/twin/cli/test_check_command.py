@@ -36,6 +36,14 @@ def check(tmp_path, capsys):
 SQUARE = "O1\nG00 X80. Z5.\nG98 G01 X40. F600.\nM30\n"
 
 
+def test_lengths_are_millimetres_in_inch_programs_too(check):
+    """X 2 inch is 50.8 mm, and the report says so."""
+    found = json.loads(check("O1\nG20 G00 X2. Z-1.\nM30\n", "--format", "json")[1])
+    assert found["units"] == {"linear": "mm", "rotary": "deg"}
+    assert (found["final"]["absolute"]["X"], found["final"]["absolute"]["Z"]) == (50.8, -25.4)
+    assert "at the end, mm | deg" in check("O1\nG20 G00 X2. Z-1.\nM30\n")[1]
+
+
 def test_json_is_one_object_with_the_keys_of_the_contract(check):
     """X 40 mm in diameter = 20 mm of slide at 600 mm/min: 2 s and the time to reach the feed."""
     code, out, err = check(SQUARE, "--format", "json")

@@ -10,7 +10,7 @@ from controller.operator.actions import ACTIONS
 from controller.tables.alarm_notes import NOTES
 from controller.tables.alarms import ALARMS
 from controller.tables.codes import G_CODES, M_CODES
-from controller.tables.parameters import PARAMETERS
+from controller.tables.parameter_table import PARAMETERS
 from controller.tables.signals import SIGNALS
 from twin.advice.kinds import KINDS
 from twin.cli import main
