@@ -88,18 +88,25 @@ class MachineAlarm:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feedback:
-    """What a real control gets back from its machine, and nothing else."""
+    """What a real control gets back from its machine, and beside it where the axes really stand."""
 
     ticks: int
     """ticks really advanced, at most `chunk.ticks`"""
     setpoint: Floats
     """(ticks, axes) setpoints as the drives saw them (couplings applied)"""
     actual: Floats
-    """(ticks, axes) measured positions [mm | deg]"""
+    """(ticks, axes) where the axes really stand [mm | deg]: what cuts the part"""
+    measured: Floats | None = None
+    """(ticks, axes) what the encoders read, which is all that a control knows; None = exactly `actual`"""
     latch: Floats | None = None
     """(axes,) positions latched at the skip trigger"""
     alarms: tuple[MachineAlarm, ...] = ()
     signals: dict[str, bool] = field(default_factory=dict)
+
+    @property
+    def readings(self) -> Floats:
+        """(ticks, axes) what the encoders read [mm | deg]."""
+        return self.actual if self.measured is None else self.measured
 
 
 class Machine(Protocol):

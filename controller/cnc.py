@@ -156,7 +156,7 @@ class Controller:
             )
         self._proposed = 0
         self._tick += feedback.ticks
-        self._encoders.take(self._tick, feedback.setpoint, feedback.actual)
+        self._encoders.take(self._tick, feedback.setpoint, feedback.readings)
         if feedback.latch is not None:
             self._encoders.touched(feedback.latch)
         self._act_on_posted()

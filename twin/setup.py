@@ -11,6 +11,7 @@ from twin.job.schema import Job, Tool
 from twin.kinematics import Kinematics, read_kinematics
 from twin.machine import (
     Assembly,
+    Changes,
     MachineSpec,
     MachineZero,
     Setup,
@@ -53,7 +54,9 @@ def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
 
     Raises InputError where the job contradicts itself or the machine.
     """
-    spec = load_machine(job.machine.model)
+    folder = job.model_folder.resolve()
+    changes = Changes(table=job.machine.changes(), place=lambda path: job.place("machine", *path))
+    spec = load_machine(folder.name, models=folder.parent, changes=changes)
     setup = Setup(job.machine.setup)
     zero = MachineZero(x_mm=job.setup.reference.X, z_mm=job.setup.reference.Z)
     first = next(iter(cutters.values()))

@@ -1,5 +1,8 @@
 """A run in words and rows: for the terminal and for the report."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -125,6 +128,8 @@ def _job_rows(outcome: Outcome) -> list[Row]:
     rows = [
         Row(label="Machine", value=machine + (", ideal axes" if outcome.options.ideal else ", servo drives"))
     ]
+    if changed := _changed(job.machine.changes()):
+        rows.append(Row(label="Machine values", value=f"changed by the job: {changed}"))
     blank = f"Ø {job.work.diameter_mm:g} × {job.work.length_mm:g} mm"
     if job.work.profile:
         blank += " turned to " + ", ".join(f"Ø {d:g} at z {z:g}" for z, d in job.work.profile)
@@ -172,6 +177,15 @@ def _job_rows(outcome: Outcome) -> list[Row]:
     if outcome.chips is not None:
         rows.append(Row(label="Chips", value=chip_words(outcome.chips)))
     return rows
+
+
+def _changed(table: Mapping[str, Any], prefix: str = "") -> str:
+    """`drives.x_slide.position_gain = 50`, one after the other."""
+    said = [
+        _changed(value, f"{prefix}{key}.") if isinstance(value, Mapping) else f"{prefix}{key} = {value}"
+        for key, value in table.items()
+    ]
+    return ", ".join(one for one in said if one)
 
 
 def chip_words(chips: Chips) -> str:

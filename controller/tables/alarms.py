@@ -125,6 +125,7 @@ MC3000 | USER ALARM | what the message of the macro asks for; MC3000 + n for #30
 SV0407 | EXCESS ERROR | a motion that the drives can follow
 SV0410 | EXCESS ERROR (STOP) | a load that the drives can hold
 SV0411 | EXCESS ERROR (MOVING) | a motion and a load that the drives can follow
+SV0436 | SOFT THERMAL (OVC) | a load and an acceleration within the motor's torque
 HT9000 | PROGRAM CANNOT BE READ | a text file in UTF-8 or GBK
 HT9001 | EMPTY PROGRAM | at least one block
 HT9003 | NOT SUPPORTED BY THE TWIN | another way to say it

@@ -70,7 +70,9 @@ def test_axes_stand_in_the_order_of_the_set_ups() -> None:
 
 
 def test_inertia_is_that_of_the_mounted_bodies() -> None:
-    """Sum of masses on slides, ½ m r² on spindles, and sin θ m between the X and the tilted slide."""
+    """Sum of masses on slides, rotors through 10 mm screws, ½ m r² on spindles, and sin θ m between the X
+    and the tilted slide."""
+    pitch = math.tau / 0.010
     steel = 7850.0
     hob = steel * math.pi * 0.035**2 * 0.080
     carried = 60.0 + 40.0 + 1.2 + hob
@@ -78,9 +80,9 @@ def test_inertia_is_that_of_the_mounted_bodies() -> None:
     arbor = steel * math.pi * 0.0105**2 * 0.080
     expected = np.diag(
         [
-            100.0 + 120.0 + carried,
-            120.0 + 150.0 + 120.0 + carried,
-            60.0 + carried,
+            2.5e-4 * pitch**2 + 120.0 + carried,
+            3.0e-4 * pitch**2 + 150.0 + 120.0 + carried,
+            1.5e-4 * pitch**2 + carried,
             0.05 + 0.09 + blank * 0.022**2 / 2 + arbor * 0.0105**2 / 2,
             0.003 + 0.00035 + hob * 0.035**2 / 2,
         ]
@@ -145,8 +147,12 @@ def edited(tmp_path: Path, *edits: tuple[str, str], file: str = "machine.toml") 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("drive_inertia = 100.0", "drive_inertia = -1.0", "drives.x_slide: drive_inertia = -1.0 must not be"),
-        ("force_limit = 8000.0", "force_limit = 0", "drives.x_slide: force_limit = 0: must be above 0"),
+        (
+            "motor_inertia = 2.5e-4",
+            "motor_inertia = -1.0",
+            "drives.x_slide: motor_inertia = -1.0 must not be",
+        ),
+        ("torque_limit = 12.7", "torque_limit = 0", "drives.x_slide: torque_limit = 0: must be above 0"),
         (
             "position_gain = 70.0",
             "position_gain = 'high'",
@@ -154,8 +160,12 @@ def edited(tmp_path: Path, *edits: tuple[str, str], file: str = "machine.toml") 
         ),
         ("position_gain = 70.0", "position_gain = nan", "position_gain = nan: expected a finite number"),
         ("position_gain = 70.0", "position_gain = true", "position_gain = True: expected a finite number"),
-        ("position_gain = 70.0", "kv = 70.0", "unknown key 'kv' (valid: drive_inertia, coulomb_friction"),
-        ("in_position = 0.005", "", "drives.x_slide: key 'in_position' is missing"),
+        (
+            "position_gain = 70.0",
+            "kv = 70.0",
+            "unknown key 'kv' (valid: kind, travel_per_turn, motor_inertia",
+        ),
+        ("in_position = 0.005 ", "# ", "drives.x_slide: key 'in_position' is missing"),
         ("physics_step_s = 0.001", "physics_step_s = 0.0003", "is 3.33333 physics steps of 0.0003 s"),
         ("physics_step_s = 0.001", "physics_step_s = 0.003", "is 0.333333 physics steps of 0.003 s"),
         ("physics_step_s = 0.001", "physics_step_s = 0.0", "machine: physics_step_s = 0: must be above 0"),

@@ -25,8 +25,8 @@ from twin.machine import (
     assemble,
     load_machine,
 )
+from twin.machine.loops import Loops
 from twin.machine.servo import tune
-from twin.machine.stability import closed_loop
 
 DELIVERED = load_machine("hobbing_lathe")
 PERIOD = DELIVERED.control_period_s
@@ -38,7 +38,9 @@ def drives_changed(spec: MachineSpec = DELIVERED, **changes: float) -> MachineSp
     return replace(spec, drives={j: replace(d, **changes) for j, d in spec.drives.items()})
 
 
-FRICTIONLESS = drives_changed(coulomb_friction=0.0, viscous_friction=0.0)
+EXACT = drives_changed(encoder_counts=0.0)
+"""with encoders that read every position exactly"""
+FRICTIONLESS = drives_changed(EXACT, coulomb_friction=0.0, viscous_friction=0.0)
 
 
 def machine(spec: MachineSpec = DELIVERED, setup: Setup = Setup.HOBBING) -> MujocoMachine:
@@ -112,7 +114,7 @@ def test_spindles_settle_within_arc_seconds() -> None:
 
 
 @pytest.mark.parametrize("k_ff", [0.0, 0.9, 1.0])
-@pytest.mark.parametrize("spec", [DELIVERED, FRICTIONLESS], ids=["friction", "frictionless"])
+@pytest.mark.parametrize("spec", [EXACT, FRICTIONLESS], ids=["friction", "frictionless"])
 def test_lag_at_constant_speed_is_that_of_the_position_loop(k_ff: float, spec: MachineSpec) -> None:
     """geometry.md, section 5: lag = (1 - k_ff) v / Kv, friction or not: the integrator carries it."""
     speeds = np.array([20.0, -8.0, 1800.0, -90.0])
@@ -126,8 +128,9 @@ def test_lag_at_constant_speed_is_that_of_the_position_loop(k_ff: float, spec: M
 def test_step_response_is_that_of_the_continuous_loop() -> None:
     """Against the exact solution of J q'' = Kp e + Ki ∫e, e = -Kv (q - r) - q', sampled ten times finer.
 
-    A step given at tick 0 stands at its end. Holding force and speed for a period T delays the velocity
-    loop by about T / 2, which at bandwidth w shifts the response by less than w T / 4 of the step.
+    A step given at tick 0 stands at its end. Holding the force for a period T, and taking the speed as the
+    difference over the last one, delays the velocity loop by about T, which at bandwidth w shifts the
+    response by less than w T / 2 of the step.
     """
     deviation = {}
     for period in (1e-4, 5e-5):
@@ -151,14 +154,14 @@ def test_step_response_is_that_of_the_continuous_loop() -> None:
             assert exact[-1] > 0.999
             measured = feedback.actual[ticks, axis] / step[axis]
             deviation[joint, period] = np.abs(measured - exact).max()
-            assert deviation[joint, period] < drive.velocity_gain * period / 4
+            assert deviation[joint, period] < drive.velocity_gain * period / 2
     for joint in DELIVERED.setups[Setup.HOBBING]:
         assert 0.45 < deviation[joint, 5e-5] / deviation[joint, 1e-4] < 0.55, "first order in the period"
 
 
 @pytest.mark.parametrize("setup", Setup)
 def test_stability_map_predicts_the_physics(setup: Setup) -> None:
-    """`closed_loop` against MuJoCo from the same start: small, frictionless, two physics steps a period."""
+    """`Loops` against MuJoCo from the same start: small, frictionless, two physics steps a period."""
     spec = replace(
         drives_changed(FRICTIONLESS, velocity_feedforward=0.0, acceleration_feedforward=0.0),
         physics_step_s=PERIOD / 2,
@@ -169,10 +172,10 @@ def test_stability_map_predicts_the_physics(setup: Setup) -> None:
     feedback = run(driven, np.tile(offset, (200, 1)))
     assembly = driven.assembly
     mass = assembly.inertia()
-    gains = [tune(spec.drives[j], i) for j, i in zip(assembly.joints, mass.diagonal(), strict=True)]
-    step = closed_loop(mass, gains, PERIOD, 2)
+    gains = [tune(d, i) for d, i in zip(assembly.drives(), mass.diagonal(), strict=True)]
+    step, _ = Loops(mass=mass, viscous=np.zeros(k), gains=gains, period_s=PERIOD, substeps=2).closed()
     unit = np.where(["spindle" in j for j in assembly.joints], np.pi / 180, 1e-3)
-    state = np.concatenate([-offset * unit, np.zeros(2 * k)])
+    state = np.concatenate([-offset * unit, np.zeros(2 * k), -offset * unit])
     for tick in range(1, 200):  # the step reaches the loop after tick 0
         state = step @ state
         np.testing.assert_allclose(feedback.actual[tick], offset + state[:k] / unit, rtol=0, atol=1e-12)
@@ -180,7 +183,7 @@ def test_stability_map_predicts_the_physics(setup: Setup) -> None:
 
 def test_holding_speed_costs_friction_and_load() -> None:
     """Force at constant speed = Coulomb + viscous · v - load, to the last digits of the integrator."""
-    driven = machine()
+    driven = machine(EXACT)
     pull = np.array([500.0, -300.0, 2.0, -30.0])
     run(driven, hobbing_motion(4000), load=lambda first, n: np.tile(pull, (n, 1)))
     speeds = np.array([0.0, -0.5e-3, np.radians(1800.0), np.radians(90.0)])
@@ -198,7 +201,7 @@ def test_force_at_the_limit_accelerates_as_newton_says() -> None:
     """Twice the acceleration that the limit can give: v = F t / J, and no windup afterwards."""
     driven = machine(FRICTIONLESS)
     inertia = driven.assembly.inertia().diagonal()
-    limits = np.array([FRICTIONLESS.drives[j].force_limit for j in driven.assembly.joints])
+    limits = np.array([d.force_limit for d in driven.assembly.drives()])
     reach = limits / inertia * np.array([1e3, 1e3, 180 / np.pi, 180 / np.pi])  # [mm/s² | deg/s²]
     t = np.arange(1, 13)[:, None] * PERIOD
     feedback = run(driven, reach * t**2)
@@ -243,7 +246,7 @@ def test_no_drift_over_thousands_of_turns() -> None:
     setpoint = np.zeros((ticks, 4))
     setpoint[:, TOOL] = ramp(18_000.0, 36_000.0, ticks)
     setpoint[:, WORK] = setpoint[:, TOOL] / 7
-    feedback = run(machine(), setpoint)
+    feedback = run(machine(EXACT), setpoint)
     assert feedback.actual[-1, TOOL] / 360 > 3000
     error = np.abs(feedback.setpoint - feedback.actual)[:, [TOOL, WORK]]
     settled, late = error[3000:30_000].max(axis=0), error[-3000:].max(axis=0)
@@ -260,7 +263,7 @@ def test_follower_lags_its_measured_master_as_theory_says(k_ff: float) -> None:
     """geometry.md, section 5, follow type: own lag (1 - k_ff) w_C / Kv_C behind the measured hob."""
     setpoint = np.zeros((4000, 4))
     setpoint[:, TOOL] = ramp(3600.0, 7200.0, 4000)
-    spec = drives_changed(velocity_feedforward=k_ff)
+    spec = drives_changed(EXACT, velocity_feedforward=k_ff)
     feedback = run(machine(spec), setpoint, couplings=(FOLLOWER,))
     wanted = 1.25 + 3 * feedback.actual[:, TOOL] / 41
     np.testing.assert_array_equal(feedback.setpoint[:, WORK], wanted)
@@ -337,7 +340,7 @@ def test_speed_reached_waits_for_the_spindle() -> None:
     feedback = driven.advance(chunk_of(setpoint, watch=watch))
     drive = DELIVERED.drives["work_spindle"]
     inertia = driven.assembly.inertia()[WORK, WORK]
-    least = 0.95 * math.radians(speed) * inertia / (drive.force_limit - drive.coulomb_friction)
+    least = 0.95 * math.radians(speed) * inertia / (drive.torque_limit - drive.coulomb_friction)
     assert feedback.signals == {"speed_reached": True, "timeout": False}
     assert least <= feedback.ticks * PERIOD <= 1.3 * least + 0.01
     reached = np.diff(feedback.actual[-2:, WORK])[0] / PERIOD

@@ -10,7 +10,6 @@ from typing import Any, Literal, NoReturn, TypeVar, get_args, get_origin, get_ty
 
 import msgspec
 
-import models
 from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
@@ -19,6 +18,7 @@ from twin.faults.table import Faults
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.job.locate import line_of
 from twin.job.schema import (
+    MODELS,
     EventTable,
     InspectionTable,
     Job,
@@ -33,7 +33,6 @@ T = TypeVar("T")
 
 TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead, "disc_wheel": DiscWheel}
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
-MODELS = Path(models.__file__).parent
 TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection", "faults", "events")
 
 
@@ -106,9 +105,11 @@ class _Reader:
             events=self._events(),
         )
         model = job.machine.model
-        if not re.fullmatch(r"\w+", model) or not (MODELS / model / "machine.toml").is_file():
+        at_hand = re.fullmatch(r"\w+", model) or "/" in model
+        if not at_hand or not (job.model_folder / "machine.toml").is_file():
             known = sorted(path.parent.name for path in MODELS.glob("*/machine.toml"))
-            self._fail(("machine", "model"), f"unknown machine model {model!r}", ", ".join(known))
+            own = "" if "/" not in model else "; or a folder with a machine.toml, from the job's own on"
+            self._fail(("machine", "model"), f"unknown machine model {model!r}", ", ".join(known) + own)
         if work.stick_out_mm is not None and work.stick_out_mm < work.length_mm:
             self._fail(
                 ("work", "stick_out_mm"),

@@ -2,17 +2,21 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from msgspec import Meta
 
+import models
 from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.cutting.blank import Blank
+from twin.errors import Place
 from twin.faults.table import Faults
 from twin.inspection.nominal import Nominal
+from twin.job.locate import line_of
 
+MODELS = Path(models.__file__).parent
 Positive = Annotated[float, Meta(gt=0)]
 NotNegative = Annotated[float, Meta(ge=0)]
 Tool = Hob | PolygonHead | DiscWheel
@@ -23,12 +27,24 @@ class MachineTable:
     """`[machine]`"""
 
     model: str = "hobbing_lathe"
-    """a folder of `models/`"""
+    """a folder of `models/`; with a slash, as `./my_lathe`, a folder from the job's own on"""
     setup: Literal["hobbing", "tilted"] = "hobbing"
     parameters: dict[str, int | float | str] = field(default_factory=dict)
     """controller parameters: number, #bit, .axis"""
     signals: dict[str, bool | Annotated[int, Meta(ge=0, le=1)]] = field(default_factory=dict)
     """input signals from the start"""
+    control_period_s: float | None = None
+    """in place of the model's"""
+    physics_step_s: float | None = None
+    drives: dict[str, dict[str, float | str]] = field(default_factory=dict)
+    """joint -> key of machine.toml -> value in place of the model's"""
+
+    def changes(self) -> dict[str, Any]:
+        """What the job changes of the model's parameter file, laid out as the file is."""
+        periods = {"control_period_s": self.control_period_s, "physics_step_s": self.physics_step_s}
+        return {k: v for k, v in periods.items() if v is not None} | (
+            {"drives": self.drives} if self.drives else {}
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,3 +133,14 @@ class Job:
     inspection: InspectionTable
     faults: Faults = field(default_factory=Faults)
     events: tuple[EventTable, ...] = ()
+
+    @property
+    def model_folder(self) -> Path:
+        """Of the machine model: one of ours, or one from the job's folder on."""
+        model = self.machine.model
+        return (self.path.parent if "/" in model else MODELS) / model
+
+    def place(self, *path: str) -> Place:
+        """Where a key stands in the job file, for messages found after reading it."""
+        text = self.path.read_text(encoding="utf-8")
+        return Place(file=str(self.path), line=line_of(text, path))

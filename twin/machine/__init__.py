@@ -8,14 +8,17 @@ from twin.machine.assembly import (
     assemble,
     hob_carrier_swivel,
 )
+from twin.machine.drive import Drive, DriveKind
 from twin.machine.ideal import IdealMachine
 from twin.machine.physical import MujocoMachine
-from twin.machine.spec import Drive, MachineSpec, Setup, load_machine
+from twin.machine.spec import Changes, MachineSpec, Setup, load_machine
 from twin.machine.watching import MachineError
 
 __all__ = [
     "Assembly",
+    "Changes",
     "Drive",
+    "DriveKind",
     "IdealMachine",
     "MachineError",
     "MachineSpec",

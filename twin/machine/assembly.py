@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.errors import InputError
+from twin.machine.drive import AxisDrive, DriveKind
 from twin.machine.spec import MachineSpec, Setup
 
 STEEL = 7850.0
@@ -71,6 +72,13 @@ class Assembly:
         """Compiled with visual geometry; the same qpos as `model`."""
         return self.mjcf.compile()
 
+    def drives(self) -> tuple[AxisDrive, ...]:
+        """What moves each axis, referred to it."""
+        hinge = mujoco.mjtJoint.mjJNT_HINGE
+        return tuple(
+            self.spec.drives[j].at_axis(rotary=self.model.joint(j).type[0] == hinge) for j in self.joints
+        )
+
     def inertia(self) -> NDArray[np.float64]:
         """(k, k) generalised inertia of the axes [kg | kg m²]; constant, as no joint changes it."""
         data = mujoco.MjData(self.model)
@@ -116,7 +124,7 @@ def assemble(
     mjcf.option.timestep = spec.physics_step_s
     physics = mjcf.copy()
     physics.discard_visual()
-    physics.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR
+    physics.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR | mujoco.mjtDisableBit.mjDSBL_ISLAND
     try:
         model = physics.compile()
     except ValueError as cause:
@@ -184,10 +192,18 @@ def _clamp_unused(mjcf: mujoco.MjSpec, spec: MachineSpec, setup: Setup) -> None:
 def _apply_drives(mjcf: mujoco.MjSpec, spec: MachineSpec, setup: Setup) -> None:
     for name in spec.setups[setup]:
         drive, joint, motor = spec.drives[name], mjcf.joint(name), mjcf.actuator(name)
-        joint.armature = drive.drive_inertia
+        rotary = joint.type == mujoco.mjtJoint.mjJNT_HINGE
+        if drive.kind is DriveKind.VARIABLE_FREQUENCY and not rotary:
+            raise InputError(
+                f"drives.{name}: an induction motor drives a spindle, not a slide",
+                place=spec.place_of("drives", name, "kind"),
+                remedy=f"valid: {DriveKind.SERVO.value}",
+            )
+        at_axis = drive.at_axis(rotary=rotary)
+        joint.armature = at_axis.inertia
         joint.frictionloss = drive.coulomb_friction
         joint.damping = [drive.viscous_friction, 0.0, 0.0]  # linear term alone
-        motor.ctrlrange = [-drive.force_limit, drive.force_limit]
+        motor.ctrlrange = [-at_axis.force_limit, at_axis.force_limit]
 
 
 def _mount_work(mjcf: mujoco.MjSpec, work: WorkMount, stick_out_mm: float) -> None:

@@ -1,37 +1,40 @@
-"""The machine in MuJoCo: servo drives on rigid bodies, one control period after the other."""
+"""The machine in MuJoCo: drives on rigid bodies, one control period after the other."""
 
 # pyright: reportAttributeAccessIssue=false
 
-import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import mujoco  # its bindings are compiled and carry no types
 import numpy as np
 
-from controller.clock import Chunk, Feedback, Floats, Load, MachineAlarm, Watch, WatchKind
+from controller.clock import Chunk, Feedback, Floats, Follow, Load, MachineAlarm, Watch, WatchKind
+from twin.errors import InputError
 from twin.machine.assembly import Assembly
+from twin.machine.backlash import Backlash
+from twin.machine.drive import AxisDrive, DriveKind
+from twin.machine.encoder import encoder
 from twin.machine.following import follow, require_chunk
-from twin.machine.servo import Servo, tune
+from twin.machine.induction import Induction, steepest
+from twin.machine.loops import Loops
+from twin.machine.servo import Gains, Servo, tune
 from twin.machine.stability import require_stable
 from twin.machine.watching import MachineError, Watcher, speed_reached
-
-SI_PER_MM = 1e-3
-SI_PER_DEG = math.pi / 180.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Axis:
-    """One axis: its servo, where MuJoCo keeps its state, and its widths in SI."""
+    """One axis: its drive at work, and where MuJoCo keeps its state."""
 
-    servo: Servo
+    drive: AxisDrive
+    loop: Servo | Induction
+    read: Callable[[float], float]
+    """encoder: motor-side position to reading, both referred to the axis"""
+    backlash: Backlash
     motor: int
     qpos: int
     dof: int
     rotary: bool
-    unit: float
-    """[m/mm | rad/deg]"""
-    in_position: float
-    error_limit: float
 
 
 class MujocoMachine:
@@ -40,32 +43,33 @@ class MujocoMachine:
     def __init__(self, assembly: Assembly) -> None:
         """Tune the drives to the inertia as mounted. Raises InputError where they would be unstable."""
         spec, model = assembly.spec, assembly.model
-        drives = [spec.drives[name] for name in assembly.joints]
-        inertia = assembly.inertia()
+        drives, inertia = assembly.drives(), assembly.inertia()
         gains = [tune(d, float(i)) for d, i in zip(drives, inertia.diagonal(), strict=True)]
-        require_stable(assembly.joints, inertia, gains, spec)
+        _require_steady(assembly, drives, inertia, gains)
+        period = spec.control_period_s
         self.assembly = assembly
         self.data = mujoco.MjData(model)
         """the physical state, for views; changing it changes the machine"""
         self._axes: list[_Axis] = []
         for name, drive, gain in zip(assembly.joints, drives, gains, strict=True):
             joint = model.joint(name)
-            rotary = joint.type[0] == mujoco.mjtJoint.mjJNT_HINGE
-            unit = SI_PER_DEG if rotary else SI_PER_MM
+            servo = drive.drive.kind is DriveKind.SERVO
             self._axes.append(
                 _Axis(
-                    servo=Servo(gain, spec.control_period_s),
+                    drive=drive,
+                    loop=Servo(gain, period) if servo else Induction(drive, period),
+                    read=encoder(drive),
+                    backlash=Backlash(drive.backlash, drive.drive.coulomb_friction),
                     motor=model.actuator(name).id,
                     qpos=int(joint.qposadr[0]),
                     dof=int(joint.dofadr[0]),
-                    rotary=rotary,
-                    unit=unit,
-                    in_position=drive.in_position * unit,
-                    error_limit=drive.error_limit * unit,
+                    rotary=joint.type[0] == mujoco.mjtJoint.mjJNT_HINGE,
                 )
             )
-        self._units = np.array([axis.unit for axis in self._axes])
+        self._units = np.array([d.unit for d in drives])
         self._qpos = [axis.qpos for axis in self._axes]
+        self._overload = [max(1, round(d.drive.overload_time_s / period)) for d in drives]
+        self._reading = [0.0] * len(self._axes)
         self._watcher = Watcher()
         self._tick = 0
 
@@ -79,16 +83,23 @@ class MujocoMachine:
         watch = self._watcher.begin(chunk.watch)
         limit = chunk.ticks if watch is None else min(chunk.ticks, self._watcher.remaining)
         forces = None if load is None or limit == 0 else self._forces(load, limit)
-        setpoint, actual, reached = self._run(chunk, limit, watch, forces)
-        ticks = len(actual)
-        if not np.isfinite(actual).all() or any(w.number for w in self.data.warning):
+        setpoint, motor, measured, reached = self._run(chunk, limit, watch, forces)
+        ticks = len(motor)
+        if not np.isfinite(motor).all() or any(w.number for w in self.data.warning):
             raise MachineError(
                 f"the machine's motion broke down between ticks {self._tick} and {self._tick + ticks}",
                 remedy="look for setpoints or loads beyond what the drives can do",
             )
         self._tick += ticks
         signals = self._watcher.end(ticks, reached=reached)
-        return Feedback(ticks=ticks, setpoint=setpoint, actual=actual, alarms=self._alarms(), signals=signals)
+        return Feedback(
+            ticks=ticks,
+            setpoint=setpoint,
+            actual=self._load_side(motor, forces) / self._units,
+            measured=measured / self._units,
+            alarms=self._alarms(),
+            signals=signals,
+        )
 
     def rest(self, ticks: int) -> None:
         """Let `ticks` pass in which nothing moves: settled drives hold their axes where they are."""
@@ -104,70 +115,149 @@ class MujocoMachine:
 
     def _run(
         self, chunk: Chunk, limit: int, watch: Watch | None, forces: Floats | None
-    ) -> tuple[Floats, Floats, bool]:
-        """Setpoints as followed, actual positions, and whether the watch was fulfilled at the last tick.
+    ) -> tuple[Floats, Floats, Floats, bool]:
+        """Setpoints as followed [mm | deg], motor-side positions and encoder readings [m | rad], and
+        whether the watch was fulfilled at the last tick.
 
         Plain floats in one loop: on arrays this short numpy would cost more than the physics.
         """
         model, data, axes = self.assembly.model, self.data, self._axes
         substeps = self.assembly.spec.substeps
         qpos, qvel, ctrl, applied = data.qpos, data.qvel, data.ctrl, data.qfrc_applied
-        hot = [(k, a.motor, a.qpos, a.dof, a.servo, a.error_limit) for k, a in enumerate(axes)]
-        couplings = [(c, axes[c.slave], axes[c.master]) for c in chunk.couplings]
+        servos = [
+            (k, a.motor, a.loop, a.drive.error_limit, self._overload[k])
+            for k, a in enumerate(axes)
+            if isinstance(a.loop, Servo)
+        ]
+        inductions = [
+            (k, a.motor, a.dof, a.loop) for k, a in enumerate(axes) if isinstance(a.loop, Induction)
+        ]
+        readers = [(a.read, a.qpos) for a in axes]
+        couplings = [(c, *self._follower(c), axes[c.master].drive.unit) for c in chunk.couplings]
         dofs = [a.dof for a in axes]
         setpoint = chunk.setpoint[:limit].copy()
-        record: list[list[float]] = []
+        positions: list[list[float]] = []
+        readings: list[list[float]] = []
         reached = False
         applied[:] = 0.0
-        q = qpos.tolist()
+        m = self._reading
         for k, target in enumerate((setpoint * self._units).tolist()):
-            v = qvel.tolist()
-            for c, slave, _ in couplings:
-                target[c.slave] = slave.servo.extrapolated()
-            for axis, motor, at, dof, servo, _ in hot:
-                ctrl[motor] = servo.force(target[axis], q[at], v[dof])
+            for c, slave, _, _ in couplings:
+                target[c.slave] = slave.extrapolated()
+            for axis, motor, servo, _, _ in servos:
+                ctrl[motor] = servo.force(target[axis], m[axis])
+            for axis, motor, dof, induction in inductions:
+                ctrl[motor] = induction.force(target[axis], float(qvel[dof]))
             if forces is not None:
                 applied[dofs] = forces[k]
             mujoco.mj_step(model, data, substeps)
             q = qpos.tolist()
-            record.append(q)
-            for c, slave, master in couplings:
-                followed = follow(c, float(chunk.setpoint[k, c.slave]), q[master.qpos] / master.unit)
+            m = [read(q[at]) for read, at in readers]
+            positions.append(q)
+            readings.append(m)
+            for c, slave, unit, master_unit in couplings:
+                followed = follow(c, float(chunk.setpoint[k, c.slave]), m[c.master] / master_unit)
                 setpoint[k, c.slave] = followed
-                slave.servo.reference = followed * slave.unit
-            excess = False
-            for _, _, at, _, servo, error_limit in hot:
-                if abs(servo.reference - q[at]) > error_limit:
-                    excess = True
-            reached = watch is not None and self._holds(watch, q)
-            if excess or reached:
+                slave.reference = followed * unit
+            alarm = False
+            for axis, _, servo, error_limit, overload in servos:
+                if abs(servo.reference - m[axis]) > error_limit or servo.periods_at_limit >= overload:
+                    alarm = True
+            reached = watch is not None and self._holds(watch, m)
+            if alarm or reached:
                 break
-        ticks = len(record)
-        actual = np.array(record).reshape(ticks, model.nq)[:, self._qpos] / self._units
-        return setpoint[:ticks], actual, reached
+        self._reading = m
+        shape = len(positions), len(axes)
+        motor_side = np.array(positions).reshape(len(positions), model.nq)[:, self._qpos]
+        return setpoint[: len(positions)], motor_side, np.array(readings).reshape(shape), reached
 
-    def _holds(self, watch: Watch, q: list[float]) -> bool:
-        """Whether the watched axes (`latch_axes`, none named = all) fulfil the condition after this tick."""
-        axes = [self._axes[k] for k in watch.latch_axes] or self._axes
+    def _follower(self, coupling: Follow) -> tuple[Servo, float]:
+        """Loop and unit of a coupling's slave. Raises MachineError where it is no servo."""
+        axis = self._axes[coupling.slave]
+        if not isinstance(axis.loop, Servo):
+            raise MachineError(
+                f"{self.assembly.joints[coupling.slave]} is the slave of the gear box, and its motor has no "
+                "position loop",
+                remedy='kind = "servo" for this drive',
+            )
+        return axis.loop, axis.drive.unit
+
+    def _load_side(self, motor: Floats, forces: Floats | None) -> Floats:
+        """(ticks, axes) positions of the load behind the motors' [m | rad]."""
+        columns = [
+            axis.backlash.follow(motor[:, k], None if forces is None else forces[: len(motor), k])
+            for k, axis in enumerate(self._axes)
+        ]
+        return np.column_stack(columns)
+
+    def _holds(self, watch: Watch, m: list[float]) -> bool:
+        """Whether the watched axes (`latch_axes`, none named = all) fulfil the condition after this tick.
+
+        A spindle without a position loop is always in position.
+        """
+        watched = watch.latch_axes or range(len(self._axes))
         if watch.kind is WatchKind.IN_POSITION:
-            return all(abs(a.servo.reference - q[a.qpos]) <= a.in_position for a in axes)
+            return all(
+                abs(a.loop.reference - m[k]) <= a.drive.in_position
+                for k, a in ((k, self._axes[k]) for k in watched)
+                if isinstance(a.loop, Servo)
+            )
         period, v = self.assembly.spec.control_period_s, self.data.qvel
-        return all(speed_reached(a.servo.speed(period), v[a.dof]) for a in axes if a.rotary)
+        axes = [self._axes[k] for k in watched]
+        return all(speed_reached(a.loop.speed(period), v[a.dof]) for a in axes if a.rotary)
 
     def _alarms(self) -> tuple[MachineAlarm, ...]:
-        """Axes whose following error now exceeds its limit."""
+        """Axes whose following error exceeds its limit now, or whose motor has stood too long at its own."""
         alarms: list[MachineAlarm] = []
         for k, (name, axis) in enumerate(zip(self.assembly.joints, self._axes, strict=True)):
-            error = axis.servo.reference - float(self.data.qpos[axis.qpos])
-            if abs(error) > axis.error_limit:
-                moving = axis.servo.reference != axis.servo.previous
+            loop, drive = axis.loop, axis.drive
+            if not isinstance(loop, Servo):
+                continue
+            error = loop.reference - self._reading[k]
+            if abs(error) > drive.error_limit:
+                moving = loop.reference != loop.previous
                 unit = "deg" if axis.rotary else "mm"
-                alarms.append(
-                    MachineAlarm(
-                        number="SV0411" if moving else "SV0410",
-                        axis=k,
-                        found=f"{name}: following error {error / axis.unit:.4g} {unit}, "
-                        f"limit {axis.error_limit / axis.unit:g} {unit}",
-                    )
+                number = "SV0411" if moving else "SV0410"
+                found = (
+                    f"following error {error / drive.unit:.4g} {unit}, "
+                    f"limit {drive.error_limit / drive.unit:g} {unit}"
                 )
+            elif loop.periods_at_limit >= self._overload[k]:
+                number = "SV0436"
+                found = (
+                    f"motor at its limit of {drive.drive.torque_limit:g} N m for "
+                    f"{drive.drive.overload_time_s:g} s"
+                )
+            else:
+                continue
+            alarms.append(MachineAlarm(number=number, axis=k, found=f"{name}: {found}"))
         return tuple(alarms)
+
+
+def _require_steady(
+    assembly: Assembly, drives: tuple[AxisDrive, ...], inertia: Floats, gains: list[Gains]
+) -> None:
+    """Raise InputError, with the limit, where the sampled drives would not be stable."""
+    spec = assembly.spec
+    kinds = [d.drive.kind is DriveKind.SERVO for d in drives]
+    servos = np.flatnonzero(kinds)
+    loops = Loops(
+        mass=inertia[np.ix_(servos, servos)],
+        viscous=np.array([drives[k].drive.viscous_friction for k in servos]),
+        gains=[gains[k] for k in servos],
+        period_s=spec.control_period_s,
+        substeps=spec.substeps,
+    )
+    require_stable([assembly.joints[k] for k in servos], loops, spec)
+    for k in np.flatnonzero(~np.array(kinds)):
+        # held for a period, the steepest slope of torque over speed must not overshoot standstill
+        rate = steepest(drives[k]) / inertia[k, k]
+        if rate * spec.control_period_s >= 2.0:
+            name = assembly.joints[k]
+            least = drives[k].drive.breakdown_slip * rate * spec.control_period_s / 2.0
+            raise InputError(
+                f"drives.{name}: breakdown_slip {drives[k].drive.breakdown_slip:g} 1/min makes the motor so "
+                "stiff that it is unstable at this control period",
+                place=spec.place_of("drives", name, "breakdown_slip"),
+                remedy=f"stable above {least:.4g} 1/min",
+            )

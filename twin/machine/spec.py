@@ -1,14 +1,17 @@
-"""What a machine's drives are: `models/<name>/machine.toml` as frozen, checked values."""
+"""What a machine is: `models/<name>/machine.toml` as frozen, checked values."""
 
 import math
 import tomllib
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from enum import Enum
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from twin.errors import InputError, Place
+from twin.machine.drive import Drive
+from twin.machine.parameter_file import ParameterReader
 
 MODELS = Path(str(files("models")))
 PARAMETER_FILE = "machine.toml"
@@ -22,31 +25,22 @@ class Setup(Enum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drive:
-    """One servo drive with its transmission, referred to the joint: [kg, N, m] or [kg m², N m, rad]."""
+class Changes:
+    """What a job changes of a parameter file, and where it says so."""
 
-    drive_inertia: float
-    """[kg | kg m²] of motor and transmission, besides the bodies they move"""
-    coulomb_friction: float
-    """[N | N m]"""
-    viscous_friction: float
-    """[N s/m | N m s]"""
-    force_limit: float
-    """[N | N m]"""
-    position_gain: float
-    """Kv [1/s]"""
-    velocity_feedforward: float
-    """k_ff; the lag at constant speed v is (1 - k_ff) v / Kv"""
-    acceleration_feedforward: float
-    """share of the force of acceleration that is given ahead of the loops"""
-    velocity_gain: float
-    """proportional gain of the velocity loop over the moved inertia [1/s]"""
-    integral_time_s: float
-    """reset time of the velocity loop"""
-    in_position: float
-    """following error below which the axis counts as in position [mm | deg]"""
-    error_limit: float
-    """following error above which the drive gives an alarm [mm | deg]"""
+    table: Mapping[str, Any]
+    """as the parameter file: `{"drives": {"x_slide": {"position_gain": 50.0}}}`"""
+    place: Callable[[tuple[str, ...]], Place]
+    """of a key in the job"""
+
+    def holds(self, path: tuple[str, ...]) -> bool:
+        """Whether the job says something about this key."""
+        found: Any = self.table
+        for key in path:
+            if not isinstance(found, Mapping) or key not in found:
+                return False
+            found = found[key]
+        return True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +57,8 @@ class MachineSpec:
     """joint names in system axis order; joints not named are clamped"""
     drives: dict[str, Drive]
     """by joint name"""
+    changes: Changes | None = None
+    """what the job has changed"""
 
     @property
     def substeps(self) -> int:
@@ -74,9 +70,13 @@ class MachineSpec:
         """The parameter file, for messages."""
         return Place(file=str(self.folder / PARAMETER_FILE))
 
+    def place_of(self, *path: str) -> Place:
+        """Where a value comes from: the job where it changes it, else the parameter file."""
+        return self.changes.place(path) if self.changes and self.changes.holds(path) else self.place
 
-def load_machine(name: str, *, models: Path = MODELS) -> MachineSpec:
-    """Read `models/<name>/machine.toml`.
+
+def load_machine(name: str, *, models: Path = MODELS, changes: Changes | None = None) -> MachineSpec:
+    """Read `models/<name>/machine.toml`, with what a job changes of its drives and periods.
 
     Raises InputError for an unknown model, unreadable TOML, unknown or missing keys, wrong types and
     impossible values.
@@ -90,26 +90,23 @@ def load_machine(name: str, *, models: Path = MODELS) -> MachineSpec:
         table = tomllib.loads((folder / PARAMETER_FILE).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as cause:
         raise InputError(f"cannot read machine parameters: {cause}", place=place) from cause
-    reader = _Reader(place)
-    reader.keys(table, ("control_period_s", "physics_step_s", "setups", "drives"), "machine")
+
+    def place_of(path: tuple[str, ...]) -> Place:
+        return changes.place(path) if changes and changes.holds(path) else place
+
+    reader = ParameterReader(table, changes.table if changes else {}, place_of)
+    reader.keys((), ("control_period_s", "physics_step_s", "setups", "drives"))
+    reader.keys(("setups",), tuple(s.value for s in Setup))
     spec = MachineSpec(
         name=name,
         folder=folder,
-        control_period_s=reader.positive(table, "control_period_s"),
-        physics_step_s=reader.positive(table, "physics_step_s"),
-        setups=reader.setups(table["setups"]),
-        drives={
-            joint: reader.drive(d, joint) for joint, d in reader.table(table["drives"], "drives").items()
-        },
+        control_period_s=reader.positive(("control_period_s",)),
+        physics_step_s=reader.positive(("physics_step_s",)),
+        setups={s: reader.joints(("setups", s.value)) for s in Setup},
+        drives={joint: reader.drive(joint) for joint in reader.table(("drives",))},
+        changes=changes,
     )
-    ratio = spec.control_period_s / spec.physics_step_s
-    if spec.substeps < 1 or not math.isclose(ratio, spec.substeps, rel_tol=1e-9):
-        raise InputError(
-            f"control_period_s = {spec.control_period_s} is {ratio:.6g} physics steps of "
-            f"{spec.physics_step_s} s",
-            place=place,
-            remedy="it must be a whole number of them",
-        )
+    _require_whole_steps(spec)
     for setup, joints in spec.setups.items():
         if missing := [j for j in joints if j not in spec.drives]:
             raise InputError(
@@ -120,65 +117,21 @@ def load_machine(name: str, *, models: Path = MODELS) -> MachineSpec:
     return spec
 
 
-_MAY_BE_ZERO = (
-    "drive_inertia",
-    "coulomb_friction",
-    "viscous_friction",
-    "velocity_feedforward",
-    "acceleration_feedforward",
-)
-
-
-class _Reader:
-    """Takes checked values out of parsed TOML; every message names the file and the key."""
-
-    def __init__(self, place: Place) -> None:
-        self._place = place
-
-    def _fail(self, text: str, remedy: str = "") -> InputError:
-        return InputError(text, place=self._place, remedy=remedy)
-
-    def table(self, value: Any, where: str) -> dict[str, Any]:
-        if not isinstance(value, dict):
-            raise self._fail(f"{where}: expected a table, got {value!r}")
-        return value
-
-    def keys(self, table: dict[str, Any], expected: tuple[str, ...], where: str) -> None:
-        for key in table:
-            if key not in expected:
-                raise self._fail(f"{where}: unknown key {key!r}", f"valid: {', '.join(expected)}")
-        for key in expected:
-            if key not in table:
-                raise self._fail(f"{where}: key {key!r} is missing")
-
-    def number(self, table: dict[str, Any], key: str, where: str = "machine") -> float:
-        value = table[key]
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise self._fail(f"{where}: {key} = {value!r}: expected a finite number")
-        if value < 0:
-            raise self._fail(f"{where}: {key} = {value} must not be negative")
-        return float(value)
-
-    def positive(self, table: dict[str, Any], key: str, where: str = "machine") -> float:
-        if (value := self.number(table, key, where)) == 0:
-            raise self._fail(f"{where}: {key} = 0: must be above 0")
-        return value
-
-    def setups(self, value: Any) -> dict[Setup, tuple[str, ...]]:
-        table = self.table(value, "setups")
-        self.keys(table, tuple(s.value for s in Setup), "setups")
-        for name, joints in table.items():
-            if not isinstance(joints, list) or not all(isinstance(j, str) for j in joints):
-                raise self._fail(f"setups.{name}: expected a list of joint names, got {joints!r}")
-            if len(set(joints)) != len(joints):
-                raise self._fail(f"setups.{name}: a joint is named twice: {joints}")
-        return {s: tuple(table[s.value]) for s in Setup}
-
-    def drive(self, value: Any, joint: str) -> Drive:
-        table = self.table(value, f"drives.{joint}")
-        names = tuple(f.name for f in fields(Drive))
-        self.keys(table, names, f"drives.{joint}")
-        where = f"drives.{joint}"
-        return Drive(
-            **{n: (self.number if n in _MAY_BE_ZERO else self.positive)(table, n, where) for n in names}
+def _require_whole_steps(spec: MachineSpec) -> None:
+    period, step = spec.control_period_s, spec.physics_step_s
+    ratio = period / step
+    changed = spec.changes is not None and spec.changes.holds(("control_period_s",))
+    place = spec.place_of("control_period_s" if changed else "physics_step_s")
+    if spec.substeps < 1 or not math.isclose(ratio, spec.substeps, rel_tol=1e-9):
+        raise InputError(
+            f"control_period_s = {period} is {ratio:.6g} physics steps of {step} s",
+            place=place,
+            remedy="it must be a whole number of them",
+        )
+    rate = 1.0 / period
+    if not math.isclose(rate, round(rate), rel_tol=1e-9):
+        raise InputError(
+            f"control_period_s = {period} divides a second into {rate:.6g} parts",
+            place=place,
+            remedy="a whole fraction of a second, as 0.001",
         )
