@@ -196,7 +196,7 @@ def _apply_drives(mjcf: mujoco.MjSpec, spec: MachineSpec, setup: Setup) -> None:
         if drive.kind is DriveKind.VARIABLE_FREQUENCY and not rotary:
             raise InputError(
                 f"drives.{name}: an induction motor drives a spindle, not a slide",
-                place=spec.place_of("drives", name, "kind"),
+                place=spec.place_of(("drives", name, "kind")),
                 remedy=f"valid: {DriveKind.SERVO.value}",
             )
         at_axis = drive.at_axis(rotary=rotary)

@@ -53,7 +53,7 @@ class Loops:
         inertial = self._diagonal("acceleration_feedforward") / period**2
         position = self._diagonal("position")
         error = np.hstack([-position - one / period, nothing, nothing, one / period])
-        error_of_r = np.hstack([nothing, position - forward, forward])
+        error_of_r = np.hstack([-forward, position + forward, nothing])
         z = np.hstack([nothing, nothing, one, nothing]) + period * error
         z_of_r = period * error_of_r
         proportional, integral = self._diagonal("proportional"), self._diagonal("integral")

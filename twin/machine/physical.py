@@ -258,6 +258,6 @@ def _require_steady(
             raise InputError(
                 f"drives.{name}: breakdown_slip {drives[k].drive.breakdown_slip:g} 1/min makes the motor so "
                 "stiff that it is unstable at this control period",
-                place=spec.place_of("drives", name, "breakdown_slip"),
+                place=spec.place_of(("drives", name, "breakdown_slip")),
                 remedy=f"stable above {least:.4g} 1/min",
             )

@@ -87,11 +87,11 @@ class Servo:
     def force(self, target: float, reading: float) -> float:
         """Force over the coming period; `target` is the setpoint of its end, `reading` the encoder's now.
 
-        Position is compared with the setpoint of the same instant, so at constant speed and k_ff = 1
-        nothing lags.
+        Position and speed are compared with the setpoint's of the same instant and the same period, so with
+        full feed-forward nothing lags and nothing overshoots.
         """
         reference = self.reference
-        step = target - reference
+        step = reference - self.previous
         demand = self._position * (reference - reading) + self._velocity_feedforward * step
         fastest = self._speed_limit
         if demand > fastest:
@@ -103,7 +103,7 @@ class Servo:
         force = (
             self._proportional * error
             + integral
-            + self._acceleration_feedforward * (step - reference + self.previous)
+            + self._acceleration_feedforward * (target - reference - step)
         )
         self._read = reading
         self.previous = reference

@@ -70,9 +70,13 @@ class MachineSpec:
         """The parameter file, for messages."""
         return Place(file=str(self.folder / PARAMETER_FILE))
 
-    def place_of(self, *path: str) -> Place:
-        """Where a value comes from: the job where it changes it, else the parameter file."""
-        return self.changes.place(path) if self.changes and self.changes.holds(path) else self.place
+    def place_of(self, *paths: tuple[str, ...]) -> Place:
+        """Where the values that are at fault come from: the job where it changes one, else the parameter
+        file."""
+        for path in paths:
+            if self.changes and self.changes.holds(path):
+                return self.changes.place(path)
+        return self.place
 
 
 def load_machine(name: str, *, models: Path = MODELS, changes: Changes | None = None) -> MachineSpec:
@@ -120,8 +124,7 @@ def load_machine(name: str, *, models: Path = MODELS, changes: Changes | None = 
 def _require_whole_steps(spec: MachineSpec) -> None:
     period, step = spec.control_period_s, spec.physics_step_s
     ratio = period / step
-    changed = spec.changes is not None and spec.changes.holds(("control_period_s",))
-    place = spec.place_of("control_period_s" if changed else "physics_step_s")
+    place = spec.place_of(("control_period_s",), ("physics_step_s",))
     if spec.substeps < 1 or not math.isclose(ratio, spec.substeps, rel_tol=1e-9):
         raise InputError(
             f"control_period_s = {period} is {ratio:.6g} physics steps of {step} s",

@@ -54,13 +54,13 @@ def require_stable(joints: Sequence[str], loops: Loops, spec: MachineSpec) -> No
                 f"drives.{joint}: the velocity loop is unstable (velocity_gain "
                 f"{gain.proportional / loop.mass[0, 0]:.4g} 1/s, integral_time_s {reset:.4g} s, "
                 f"period {spec.control_period_s:g} s)",
-                place=spec.place_of("drives", joint, "velocity_gain"),
+                place=spec.place_of(("drives", joint, "velocity_gain"), ("drives", joint, "integral_time_s")),
                 remedy=f"stable below {highest:.4g} 1/s" if highest else "lengthen integral_time_s",
             )
         if gain.position >= limit:
             raise InputError(
                 f"drives.{joint}: position_gain {gain.position:.4g} 1/s makes the loop unstable",
-                place=spec.place_of("drives", joint, "position_gain"),
+                place=spec.place_of(("drives", joint, "position_gain")),
                 remedy=f"stable below {limit:.4g} 1/s",
             )
     if (radius := loops.spectral_radius()) >= 1.0:
