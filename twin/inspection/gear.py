@@ -30,6 +30,7 @@ class _Sizes:
     """Span, balls and thickness: fields of the result, their uncertainties, and why some are missing."""
 
     values: dict[str, float | None]
+    ball_depth_um: Floats
     uncertainty: dict[str, float]
     unmeasured: dict[str, str]
 
@@ -109,6 +110,7 @@ def measure_gear(
         undercut=usable.undercut,
         chamfered=usable.chamfered,
         helix_range_mm=placed.helix_range,
+        ball_depth_um=sizes.ball_depth_um,
         uncertainty=sizes.uncertainty,
     )
     return result, unmeasured
@@ -154,6 +156,7 @@ def _sizes(
     if ball is not None:
         lie, reason = measure_balls(solid, placed, ball, tip_radius=tip_radius)
     over = runout = None
+    depth = np.zeros(0)
     if lie is None or ball is None:
         unmeasured |= {"over_pins_mm": reason, "runout_um": reason}
         if ball is None:
@@ -161,6 +164,7 @@ def _sizes(
     else:
         centres, facet = lie
         over, runout = over_balls(centres, ball), 1000 * float(np.ptp(centres))
+        depth = 1000 * (centres - centres.mean())
         uncertainty["over_pins_mm"] = abs(over - over_balls(centres - facet, ball))
         uncertainty["runout_um"] = 1000 * float(np.ptp(facet))
     thickness, reason = measure_thickness(solid, placed, usable, tip_diameter=2 * float(tips.mean()))
@@ -179,6 +183,7 @@ def _sizes(
             "chordal_thickness_mm": thickness.chord if thickness else None,
             "chordal_height_mm": thickness.height if thickness else None,
         },
+        ball_depth_um=depth,
         uncertainty=uncertainty,
         unmeasured=unmeasured,
     )

@@ -166,6 +166,9 @@ class GearResult:
     """the flanks end below the tips"""
     helix_range_mm: tuple[float, float] | None = None
     """z between which helices are evaluated"""
+    ball_depth_um: Floats = field(default_factory=lambda: np.zeros(0))
+    """(z,) how far out a ball lies in the gap behind each tooth, clockwise, against the mean; empty where
+    balls were not measured"""
     uncertainty: Mapping[str, float] = field(default_factory=dict)
     """field -> how much of it the mesh's own facets can make, in the unit of the field"""
 

@@ -5,7 +5,7 @@ import platform
 from importlib.metadata import version
 from pathlib import Path
 
-LIBRARIES = ("hobtwin", "mujoco", "numpy", "scipy", "manifold3d", "trimesh", "matplotlib")
+LIBRARIES = ("hobtwin", "mujoco", "numpy", "scipy", "manifold3d", "trimesh")
 
 
 def provenance(inputs: dict[str, Path], settings: dict[str, object]) -> dict[str, object]:

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +12,8 @@ STEEL = (0.86, 0.87, 0.88)
 """of faces without a deviation, red, green, blue in 0 … 1"""
 ZERO = 128
 """index of no deviation; 1 and 255 are the ends of the scale, 0 = no value"""
+DIVERGING = "053061 2166ac 4393c3 92c5de d1e5f0 f7f7f7 fddbc7 f4a582 d6604d b2182b 67001f"
+"""eleven steps from blue to red: the scheme "RdBu" of C. Brewer, joined by straight lines"""
 COVERED = 0.99
 """share of the values that the scale must hold"""
 
@@ -26,7 +27,7 @@ class Scale:
     beyond: float
     """share of the values that lie outside it and are drawn in its end colours, 0 … 1"""
 
-    def index(self, deviation_um: Floats) -> NDArray[np.uint8]:
+    def index(self, deviation_um: NDArray[np.floating]) -> NDArray[np.uint8]:
         """(n,) place of each value on the scale, 0 where there is none."""
         finite = np.isfinite(deviation_um)
         share = np.clip(np.where(finite, deviation_um, 0.0) / self.limit_um, -1, 1)
@@ -53,10 +54,37 @@ def scale_for(deviation_um: Floats) -> Scale | None:
 
 def palette() -> NDArray[np.uint8]:
     """(256, 3) red, green, blue by index: 0 steel, 1 blue (missing), 128 near white, 255 red (too much)."""
-    shares = np.clip((np.arange(256) - 1) / 254, 0, 1)
-    colours = matplotlib.colormaps["RdBu_r"](shares)[:, :3]
-    colours[0] = STEEL
-    return np.rint(255 * colours).astype(np.uint8)
+    steps = np.array([list(bytes.fromhex(step)) for step in DIVERGING.split()], np.float64)
+    place = np.clip((np.arange(256) - 1) / 254, 0, 1) * (len(steps) - 1)
+    colours = np.stack([np.interp(place, np.arange(len(steps)), one) for one in steps.T], axis=-1)
+    colours[0] = 255 * np.array(STEEL)
+    return np.rint(colours).astype(np.uint8)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Legend:
+    """What the page says of the colours."""
+
+    limit: str
+    """end of the scale [µm]"""
+    ticks: tuple[tuple[float, str], ...]
+    gradient: str
+    """CSS colour stops, lowest first"""
+    beyond: str
+    """share of the values beyond its ends [%]; empty where there are none"""
+
+    @staticmethod
+    def of(deviation_um: Floats) -> "Legend | None":
+        """The legend of a part; None where nothing on it is coloured."""
+        scale = scale_for(deviation_um)
+        if scale is None:
+            return None
+        return Legend(
+            limit=f"{scale.limit_um:g}",
+            ticks=scale.ticks(),
+            gradient=gradient(palette()),
+            beyond=number(100 * scale.beyond, 1) if scale.beyond else "",
+        )
 
 
 def gradient(colours: NDArray[np.uint8]) -> str:

@@ -115,3 +115,10 @@ class ReportData:
     inspection: Inspection = field(default_factory=Inspection)
     programs: tuple[Program, ...] = ()
     pictures: tuple[Picture, ...] = ()
+    sync_error_arcsec: Floats | None = None
+    """(n,) of the work against the tool, one a sample of the recording, NaN out of sync"""
+
+    @property
+    def solid_part(self) -> Part | None:
+        """The part, where it has a face to show."""
+        return self.part if self.part is not None and len(self.part.faces) else None

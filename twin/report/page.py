@@ -1,42 +1,24 @@
 """`report.html`: one file that opens anywhere, without network, and prints."""
 
-import base64
-import json
 import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from twin.errors import InputError, Place
-from twin.report import tables, words
-from twin.report.colours import gradient, palette, scale_for
-from twin.report.data import Part, ReportData, Severity
-from twin.report.labels import Label, labels
-from twin.report.motion import motion_chart
-from twin.report.payload import encode, thinned
-from twin.report.pictures import END, ISOMETRIC, place, render_part
-from twin.report.pitch import pitch_chart
+from twin.report.data import ReportData
 from twin.report.scale import number
-from twin.report.section import section_chart
-from twin.report.traces import MOST_TRACES, helix_chart, profile_chart
+from twin.report.sections import SECTIONS, Section, Tab
 
-PICTURE_SIZE = (680, 540)
-"""[pixels]"""
-STILLS = {"Isometric, front face on top": ISOMETRIC, "Front face, C0 to the right": END}
-MOST_TRIANGLES = 600_000
-"""that are embedded as they are; a larger mesh is thinned out for the view"""
+ASSETS = Path(__file__).parent / "assets"
+STYLES = ("base.css", "charts.css")
+PRINT = "print.css"
+"""comes last: it has the last word"""
+SCRIPTS = ("tabs.js",)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe\uffff]")
-_ENVIRONMENT = Environment(
-    loader=PackageLoader("twin.report", "assets"),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-)
+_SUBSCRIPT = re.compile(r"_\{([^}]*)\}")
 
 
 def write_report(path: Path, report: ReportData) -> None:
@@ -49,96 +31,56 @@ def write_report(path: Path, report: ReportData) -> None:
 
 def render(report: ReportData) -> str:
     """Return the page as HTML."""
-    part = report.part if report.part is not None and len(report.part.faces) else None
-    numbers = labels(report.inspection)
-    # numpy leaves the interpreter free most of the time, so the pictures are drawn beside the charts.
-    with ThreadPoolExecutor(1) as beside:
-        stills = beside.submit(_stills, part, numbers) if part else None
-        charts = _charts(report)
-        viewer = _viewer(part, numbers) if part else None
-        html = _ENVIRONMENT.get_template("report.html").render(
-            report=report,
-            headline=words.headline(report),
-            key_figures=tables.key_figures(report.inspection),
-            comparison=tables.comparison(report.inspection),
-            graded=tables.graded(report.inspection.gear) if report.inspection.gear else (),
-            class_reached=tables.class_reached(report.inspection.gear, "overall")
-            if report.inspection.gear
-            else "",
-            class_allowed=tables.class_allowed(report.inspection),
-            missing=words.missing(report.inspection),
-            charts=charts,
-            most_traces=MOST_TRACES,
-            viewer=viewer,
-            stills=stills.result() if stills else (),
-            pictures=[(picture.caption, _data_url(picture.png)) for picture in report.pictures],
-            programs=[
-                (program.name, tables.listing(program, report.messages)) for program in report.programs
-            ],
-            alarm=Severity.ALARM,
-            number=number,
-            css=_asset("report.css"),
-            script=_asset("viewer.js"),
-        )
+    # numpy leaves the interpreter free most of the time: the sections are built beside one another
+    with ThreadPoolExecutor(2) as pool:
+        built = list(pool.map(lambda build: build(report), SECTIONS))
+    sections = [section for section in built if section is not None]
+    tabs = [
+        (tab, [(section, _set(section)) for section in sections if section.tab is tab])
+        for tab in Tab
+        if any(section.tab is tab for section in sections)
+    ]
+    html = _ENVIRONMENT.get_template("page.html").render(
+        title=report.title,
+        tabs=tabs,
+        css=_joined((*STYLES, *_beside(sections, "css"), PRINT)),
+        running_title=Markup(_css_string(report.title)),
+        script=_joined((*SCRIPTS, *_beside(sections, "js"))),
+    )
     return _CONTROL.sub("\ufffd", html)
 
 
-def _charts(report: ReportData) -> dict[str, Markup]:
-    """SVG by name, of what there is to draw."""
-    gear, polygon = report.inspection.gear, report.inspection.polygon
-    drawn: dict[str, str | None] = {}
-    if gear:
-        drawn |= {"profile": profile_chart(gear), "helix": helix_chart(gear), "pitch": pitch_chart(gear)}
-    if polygon:
-        drawn["section"] = section_chart(polygon)
-    if report.recording:
-        drawn["motion"] = motion_chart(report.recording, report.rotary_axes)
-    return {name: Markup(svg) for name, svg in drawn.items() if svg is not None}
+def _set(section: Section) -> Markup:
+    """The inside of a section."""
+    return Markup(_ENVIRONMENT.get_template(f"sections/{section.name}.html").render(section.values))
 
 
-def _stills(part: Part, numbers: tuple[Label, ...]) -> tuple[dict[str, Any], ...]:
-    """Captions, data URLs and sizes of the still pictures, and where numbers stand on them."""
-    pngs = render_part(part.vertices, part.faces, PICTURE_SIZE, STILLS.values())
-    anchors = np.array([label.position_mm for label in numbers]).reshape(-1, 3)
-    places = place(part.vertices, PICTURE_SIZE, END, anchors)
-    return tuple(
-        {
-            "caption": caption,
-            "url": _data_url(png),
-            "size": PICTURE_SIZE,
-            "numbers": [(label.text, *at) for label, at in zip(numbers, places, strict=True)]
-            if view is END
-            else (),
-        }
-        for (caption, view), png in zip(STILLS.items(), pngs, strict=True)
-    )
+def _beside(sections: list[Section], kind: str) -> list[str]:
+    """Style sheets or scripts that sections bring along."""
+    names = (f"sections/{section.name}.{kind}" for section in sections)
+    return [name for name in names if (ASSETS / name).exists()]
 
 
-def _viewer(part: Part, numbers: tuple[Label, ...]) -> dict[str, Any]:
-    """What the template needs to set up the view that turns."""
-    shown = thinned(part, MOST_TRIANGLES)
-    scale = scale_for(part.deviation_um)
-    index = scale.index(shown.deviation_um) if scale else np.zeros(len(shown.vertices), np.uint8)
-    payload = encode(shown.vertices, shown.faces, index)
-    colours = palette()
-    header = payload.header() | {
-        "limitUm": scale.limit_um if scale else None,
-        "palette": base64.b64encode(colours.tobytes()).decode("ascii"),
-        "labels": [(label.text, *label.position_mm) for label in numbers],
-    }
-    return {
-        "header": Markup(json.dumps(header)),
-        "data": Markup(payload.data),
-        "scale": scale,
-        "gradient": gradient(colours),
-        "triangles": len(shown.faces),
-        "all_triangles": len(part.faces),
-    }
+def _joined(names: tuple[str, ...]) -> Markup:
+    return Markup("\n".join((ASSETS / name).read_text(encoding="utf-8") for name in names))
 
 
-def _data_url(png: bytes) -> str:
-    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")
+def _css_string(text: str) -> str:
+    """A CSS string that ends nothing but itself: every character but letters and digits escaped."""
+    return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text) + '"'
 
 
-def _asset(name: str) -> Markup:
-    return Markup(Path(__file__).parent.joinpath("assets", name).read_text(encoding="utf-8"))
+def _lowered(text: str) -> Markup:
+    """Text for HTML, what stands in `_{…}` as subscript."""
+    return Markup(_SUBSCRIPT.sub(r"<sub>\1</sub>", str(escape(text))))
+
+
+_ENVIRONMENT = Environment(
+    loader=PackageLoader("twin.report", "assets"),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+_ENVIRONMENT.globals["number"] = number
+_ENVIRONMENT.filters["lowered"] = _lowered

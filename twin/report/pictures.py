@@ -3,17 +3,17 @@
 An orthographic scan-line renderer with a depth buffer, vectorised over all triangles at once.
 """
 
-import io
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import matplotlib.image
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from twin.inspection.result import Floats
 from twin.report.colours import STEEL
+from twin.report.png import png_rgba
+from twin.report.raster import area, on_plane, visible
 
 Ints = NDArray[np.integer]
 Single = NDArray[np.floating]
@@ -21,8 +21,6 @@ SAMPLES = 2
 """picture elements are averaged over SAMPLES × SAMPLES"""
 CREASE_COSINE = np.cos(np.radians(15.0))
 """a blended normal further than this from the facet's own lies on a sharp edge"""
-LEVEL = 1e-4
-"""an edge that falls by less crosses no row [pixels]"""
 FALLOFF = np.float32(0.16)
 """share by which the light weakens from the middle to the lower right corner"""
 
@@ -49,20 +47,30 @@ END = View(towards_eye=(0.0, 0.0, 1.0), up=(0.0, 1.0, 0.0))
 """onto the front face as the tailstock sees it, +X to the right"""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tint:
+    """Colours of a mesh by its vertices."""
+
+    index: NDArray[np.uint8]
+    """(n,) into `palette`; 0 = left in steel"""
+    palette: NDArray[np.uint8]
+    """(256, 3) red, green, blue"""
+
+
 def render_part(
     vertices: Floats,
     faces: NDArray[np.integer],
     size: tuple[int, int],
-    views: Iterable[View],
-    colour: tuple[float, float, float] = STEEL,
+    views: Iterable[tuple[View, Tint | None]],
 ) -> tuple[bytes, ...]:
     """Draw a mesh, filling the frame, once for every view; return PNGs with a transparent background.
 
     `vertices` (n, 3) [mm]; `faces` (m, 3) counter-clockwise seen from outside; `size` (width, height) in
-    pixels; `colour` red, green, blue in 0 … 1. An empty mesh gives an empty picture.
+    pixels. Without a tint the part is of steel. An empty mesh gives an empty picture.
     """
     mesh = _Mesh(vertices, faces)
-    return tuple(_png(_draw(mesh, size[0] * SAMPLES, size[1] * SAMPLES, view), colour) for view in views)
+    width, height = size[0] * SAMPLES, size[1] * SAMPLES
+    return tuple(png_rgba(_draw(mesh, width, height, view, tint)) for view, tint in views)
 
 
 def place(vertices: Floats, size: tuple[int, int], view: View, points: Floats) -> Floats:
@@ -94,27 +102,58 @@ class _Mesh:
         """(3, n)"""
 
 
-def _draw(mesh: _Mesh, width: int, height: int, view: View) -> Single:
-    """(height / SAMPLES, width / SAMPLES, 2) brightness times coverage, and coverage."""
+def _draw(mesh: _Mesh, width: int, height: int, view: View, tint: Tint | None) -> NDArray[np.uint8]:
+    """(height / SAMPLES, width / SAMPLES, 4) red, green, blue, coverage."""
     turn = view.axes().astype(np.float32)
     screen = turn @ mesh.points
     scale, shift = _fit(screen, width, height)
     screen = _to_screen(screen, scale, shift)
-    facing = np.flatnonzero(_area(*screen[:2, mesh.faces].swapaxes(0, 1)) < -1e-6)
+    facing = np.flatnonzero(area(*screen[:2, mesh.faces].swapaxes(0, 1)) < -1e-6)
     faces = mesh.faces[:, facing]
     corner = screen[:, faces]
-    pixel, seen, depth = _visible(corner, width, height)
+    pixel, seen, depth = visible(corner, width, height)
     own, blended = mesh.facet_normals[:, None, facing], mesh.vertex_normals[:, faces]
     normal = np.where(_dot(own, blended) < CREASE_COSINE, own, blended)
     brightness = steel(np.tensordot(turn, normal, 1))
-    shade = _on_plane(corner, brightness, seen, pixel % width, pixel // width)
-    light = _falloff(pixel, width, height) * _crevices(depth * scale, pixel, (height, width))
-    image = np.zeros((2, height * width), np.float32)
-    image[0, pixel] = shade * light
-    image[1, pixel] = 1
-    image = image.reshape(2, height, width)
+    column, row = pixel % width, pixel // width
+    shade = on_plane(corner, brightness, seen, column, row)
+    shade *= _falloff(pixel, width, height) * _crevices(depth * scale, pixel, (height, width))
+    # brightness of steel and coverage, and with a tint red, green and blue of what is coloured
+    image = np.zeros((2 if tint is None else 5, height * width), np.float32)
+    image[0, pixel], image[1, pixel] = shade, 1
+    if tint is not None:
+        _colour(image, tint, faces, corner, pixel=pixel, seen=seen, shade=shade, width=width)
+    image = image.reshape(-1, height, width)
     parts = [image[:, i::SAMPLES, j::SAMPLES] for i in range(SAMPLES) for j in range(SAMPLES)]
-    return np.moveaxis(np.sum(parts, axis=0), 0, -1) / SAMPLES**2
+    mean = np.sum(parts, axis=0) / SAMPLES**2
+    rgba = np.zeros((*mean.shape[1:], 4), np.float32)
+    own_colour = mean[0, ..., None] * np.array(STEEL, np.float32)
+    if tint is not None:
+        own_colour += np.moveaxis(mean[2:], 0, -1)
+    rgba[..., :3] = own_colour / np.maximum(mean[1, ..., None], 1e-6)
+    rgba[..., 3] = mean[1]
+    return (np.clip(rgba, 0, 1) * 255 + 0.5).astype(np.uint8)
+
+
+def _colour(
+    image: Single,
+    tint: Tint,
+    faces: Ints,
+    corner: Single,
+    *,
+    pixel: Ints,
+    seen: Ints,
+    shade: Single,
+    width: int,
+) -> None:
+    """Take the pixels (p,) of wholly coloured triangles out of the steel and paint them, softly shaded."""
+    index = tint.index[faces].astype(np.float32)
+    own = np.flatnonzero(index.min(axis=0)[seen] > 0)
+    pixel, seen = pixel[own], seen[own]
+    value = np.rint(on_plane(corner, index, seen, pixel % width, pixel // width))
+    base = tint.palette[np.clip(value, 1, 255).astype(np.int32)].T.astype(np.float32) / 255
+    image[0, pixel] = 0
+    image[2:, pixel] = np.minimum(base * (0.35 + 0.65 * shade[own]), 1)
 
 
 def _falloff(pixel: Ints, width: int, height: int) -> Single:
@@ -151,71 +190,6 @@ def _to_screen(points: Single, scale: float, shift: Single) -> Single:
     return np.stack([points[0] * scale + shift[0], shift[1] - points[1] * scale, points[2]])
 
 
-def _area(a: Single, b: Single, c: Single) -> Single:
-    """Twice the signed area of triangles (m,) by their corners (2, m) on the screen."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _expand(first: Ints, count: Ints) -> tuple[Ints, Ints]:
-    """For runs first, first + 1, … of `count` members: the run of every member, and the member."""
-    run = np.repeat(np.arange(len(count), dtype=np.int32), count)
-    return run, np.arange(len(run), dtype=np.int32) + np.repeat(
-        first - np.cumsum(count, dtype=np.int32) + count, count
-    )
-
-
-def _span(low: Single, high: Single, size: int) -> tuple[Ints, Ints]:
-    """First of the pixels 0 … size - 1 whose middles lie between `low` and `high`, and their number."""
-    first = np.ceil(np.clip(low - 0.5, 0, size)).astype(np.int32)
-    last = np.floor(np.clip(high - 0.5, -1, size - 1)).astype(np.int32)
-    return first, np.maximum(last - first + 1, 0)
-
-
-def _visible(corner: Single, width: int, height: int) -> tuple[Ints, Ints, Single]:
-    """Pixels (p,) that show something, the triangle seen there, its depth: triangles to rows, rows to pixels.
-
-    `corner` (3 coordinates, 3 corners, m) of triangles that face the eye.
-    """
-    x, y = np.take_along_axis(corner[:2], np.argsort(corner[1], axis=0)[None], axis=1)
-    triangle, row = _expand(*_span(y[0], y[2], height))
-    at = row.astype(np.float32) + 0.5
-    # From top to bottom a triangle has one long edge, and two short ones by its middle corner.
-    long = _edge(x[[0]], y[[0]], x[[2]], y[[2]])
-    short = _edge(x[:2], y[:2], x[1:], y[1:])
-    lower = triangle + np.where(at > y[1, triangle], np.int32(corner.shape[2]), np.int32(0))
-    one = long[0, triangle] + at * long[1, triangle]
-    other = short[0, lower] + at * short[1, lower]
-    span, column = _expand(*_span(np.minimum(one, other), np.maximum(one, other), width))
-    pixel, triangle = row[span] * np.int32(width) + column, triangle[span]
-    depth = _on_plane(corner, corner[2], triangle, column, row[span])
-    nearest = np.full(width * height, -np.inf, np.float32)
-    np.maximum.at(nearest, pixel, depth)
-    front = depth == nearest[pixel]
-    seen = np.full(width * height, -1, np.int32)
-    seen[pixel[front]] = triangle[front]
-    shown = np.flatnonzero(seen >= 0)
-    return shown, seen[shown], nearest[shown]
-
-
-def _edge(x: Single, y: Single, to_x: Single, to_y: Single) -> Single:
-    """(2, k m) of k edges of m triangles, one after the other: x at y = 0, and how x runs with y."""
-    fall = to_y - y
-    slope = (to_x - x) / np.where(np.abs(fall) < LEVEL, np.inf, fall)
-    return np.stack([x - y * slope, slope]).reshape(2, -1)
-
-
-def _on_plane(corner: Single, value: Single, triangle: Ints, column: Ints, row: Ints) -> Single:
-    """Value (p,) in the middle of pixels, of a triangle that has `value` (3, m) at its corners."""
-    (bx, cx), (by, cy) = corner[:2, 1:].astype(np.float64) - corner[:2, :1]
-    to_b, to_c = value[1] - value[0], value[2] - value[0]
-    area = bx * cy - by * cx
-    by_column = ((to_b * cy - to_c * by) / area).astype(np.float32)
-    by_row = ((to_c * bx - to_b * cx) / area).astype(np.float32)
-    across = column.astype(np.float32) + np.float32(0.5) - corner[0, 0, triangle]
-    down = row.astype(np.float32) + np.float32(0.5) - corner[1, 0, triangle]
-    return value[0, triangle] + by_column[triangle] * across + by_row[triangle] * down
-
-
 def _dot(a: Single, b: Single) -> Single:
     """Products of (3, ...) and (3, ...), summed over the first axis."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -241,14 +215,3 @@ def _crevices(depth: Single, pixel: Ints, shape: tuple[int, int]) -> Single:
     around = around.repeat(step, axis=0).repeat(step, axis=1)[: shape[0], : shape[1]]
     buried = np.clip((around.flat[pixel] - depth) / (1.6 * radius) - 0.5, 0, 1)
     return 1 - 0.55 * buried
-
-
-def _png(image: Single, colour: tuple[float, float, float]) -> bytes:
-    """Encode (height, width, 2), brightness times coverage and coverage."""
-    covered = image[..., 1:]
-    rgba = np.concatenate(
-        [image[..., :1] / np.maximum(covered, 1e-6) * np.array(colour, np.float32), covered], axis=-1
-    )
-    buffer = io.BytesIO()
-    matplotlib.image.imsave(buffer, (np.clip(rgba, 0, 1) * 255 + 0.5).astype(np.uint8), format="png")
-    return buffer.getvalue()

@@ -8,16 +8,16 @@ from twin.report.data import Message, Program
 from twin.report.scale import MISSING, number, plain
 
 FLANK_ITEMS = (
-    ("profile_slope", "f<sub>Hα</sub>", "profile slope"),
-    ("profile_form", "f<sub>fα</sub>", "profile form"),
-    ("profile_total", "F<sub>α</sub>", "profile total"),
-    ("helix_slope", "f<sub>Hβ</sub>", "helix slope"),
-    ("helix_form", "f<sub>fβ</sub>", "helix form"),
-    ("helix_total", "F<sub>β</sub>", "helix total"),
-    ("single_pitch", "f<sub>p</sub>", "single pitch"),
-    ("cumulative_pitch", "F<sub>p</sub>", "cumulative pitch"),
+    ("profile_slope", "f_{Hα}", "profile slope"),
+    ("profile_form", "f_{fα}", "profile form"),
+    ("profile_total", "F_{α}", "profile total"),
+    ("helix_slope", "f_{Hβ}", "helix slope"),
+    ("helix_form", "f_{fβ}", "helix form"),
+    ("helix_total", "F_{β}", "helix total"),
+    ("single_pitch", "f_{p}", "single pitch"),
+    ("cumulative_pitch", "F_{p}", "cumulative pitch"),
 )
-"""item of the inspection, its symbol, its name"""
+"""item of the inspection, its symbol with `_{…}` for what stands lower, its name"""
 LINES_SHOWN = 2000
 """of a program, beside those that messages point at"""
 
@@ -35,8 +35,10 @@ class Compared:
 class Graded:
     """One item of the flanks, both sides, against its tolerance."""
 
+    item: str
+    """of the inspection"""
     symbol: str
-    """HTML"""
+    """with `_{…}` for what stands lower"""
     name: str
     values: tuple[tuple[str, bool], ...]
     """left and right, or one for both: the value, and whether it lies beyond the tolerance"""
@@ -67,7 +69,7 @@ def graded(gear: GearResult) -> tuple[Graded, ...]:
     """Flank deviations [µm], tolerance and class of every item."""
     sides = (gear.left, gear.right)
     rows = [_grade(gear, *item, *(getattr(side, f"{item[0]}_um") for side in sides)) for item in FLANK_ITEMS]
-    return (*rows, _grade(gear, "runout", "F<sub>r</sub>", "runout", gear.runout_um))
+    return (*rows, _grade(gear, "runout", "F_{r}", "runout", gear.runout_um))
 
 
 def class_allowed(inspection: Inspection) -> str:
@@ -88,6 +90,20 @@ def class_reached(gear: GearResult, item: str) -> str:
         else MISSING
         if reached is None
         else str(reached)
+    )
+
+
+def waves(gear: GearResult) -> tuple[tuple[str, str], ...]:
+    """Largest orders of the waviness per turn of the gear, where any was found: what, and orders [µm]."""
+    rows = (
+        (f"{side} {name}", found)
+        for name, field in (("profile", "profile_waviness"), ("helix", "helix_waviness"))
+        for side, found in (("Left", getattr(gear.left, field)), ("Right", getattr(gear.right, field)))
+    )
+    return tuple(
+        (label, ",  ".join(f"{wave.order}: {number(wave.amplitude_um, 2)}" for wave in found))
+        for label, found in rows
+        if found
     )
 
 
@@ -114,6 +130,7 @@ def listing(program: Program, messages: tuple[Message, ...]) -> tuple[Line, ...]
 def _grade(gear: GearResult, item: str, symbol: str, name: str, *found: float | None) -> Graded:
     tolerance = gear.tolerances_um.get(item)
     return Graded(
+        item=item,
         symbol=symbol,
         name=name,
         values=tuple(
@@ -185,7 +202,7 @@ def _compare_polygon(polygon: PolygonResult, nominal: PolygonNominal | None) -> 
 
 
 def key_figures(inspection: Inspection) -> tuple[tuple[str, str], ...]:
-    """The few numbers under the verdict; the labels are HTML."""
+    """The few numbers under the verdict; `_{…}` stands lower in the labels."""
     gear, polygon = inspection.gear, inspection.polygon
     if gear:
         worst_profile = _worst(gear, "profile_total_um")
@@ -197,9 +214,9 @@ def key_figures(inspection: Inspection) -> tuple[tuple[str, str], ...]:
                 "spur" if gear.hand == "spur" else f"{number(abs(gear.helix_angle_deg), 3)}° {gear.hand}",
             ),
             ("Tip Ø", number(gear.tip_diameter_mm, 2, "mm")),
-            ("Profile F<sub>α</sub>", number(worst_profile, 1, "µm")),
-            ("Helix F<sub>β</sub>", number(_worst(gear, "helix_total_um"), 1, "µm")),
-            ("Pitch F<sub>p</sub>", number(_worst(gear, "cumulative_pitch_um"), 1, "µm")),
+            ("Profile F_{α}", number(worst_profile, 1, "µm")),
+            ("Helix F_{β}", number(_worst(gear, "helix_total_um"), 1, "µm")),
+            ("Pitch F_{p}", number(_worst(gear, "cumulative_pitch_um"), 1, "µm")),
             ("Class reached", class_reached(gear, "overall")),
             ("Class allowed", class_allowed(inspection)),
         )

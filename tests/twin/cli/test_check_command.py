@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[3]
 SCENES = ROOT / "scenes"
 PROGRAMS = ROOT / "tests" / "programs"
 ALARM_KEYS = {"number", "class", "text", "file", "line", "column", "found", "remedy"}
-HEAVY = ("mujoco", "scipy", "manifold3d", "trimesh", "matplotlib", "jinja2", "rich", "lxml", "networkx")
+HEAVY = ("mujoco", "scipy", "manifold3d", "trimesh", "jinja2", "rich", "lxml", "networkx")
 
 
 @pytest.fixture

@@ -12,22 +12,27 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from twin.inspection.result import Trace
-from twin.report.motion import envelope, motion_chart, speed_rpm, sync_spans
-from twin.report.pitch import pitch_chart
+from twin.report.charts.motion import envelope, motion_chart, speed_rpm, sync_spans
+from twin.report.charts.pitch import pitch_chart
+from twin.report.charts.polygon import deviations, section_chart
+from twin.report.charts.traces import MOST_TRACES, helix_chart, mean_line, profile_chart, ratio
 from twin.report.scale import nice_ceiling, nice_floor, number, plain
-from twin.report.section import deviations, section_chart
-from twin.report.traces import MOST_TRACES, helix_chart, mean_line, profile_chart
 
 DRAWN = 0.02
-"""points of an SVG stand within this of where they belong [pt]: coordinates end at 0.01"""
+"""points of an SVG stand within this of where they belong [mm]: coordinates end at 0.01"""
 
 
 def paths(svg, gid):
-    """The vertices (n, 2) of the first path of a group, y upwards, and how many pieces it has."""
-    group = svg.index(f'id="{gid}"')
-    outline = re.search(r'<path d="([^"]*)"', svg[group:])[1]
+    """The vertices (n, 2) of a line [mm], y upwards, and how many pieces it has."""
+    outline = re.search(rf'<path id="{gid}"[^>]* d="([^"]*)"', svg)[1]
     numbers = np.array(re.findall(r"-?\d+(?:\.\d+)?", outline), float).reshape(-1, 2)
     return numbers * [1, -1], outline.count("M")
+
+
+def boxes(svg, gid):
+    """Left, top, width and height of a rectangle [mm]."""
+    tag = re.search(rf'<rect id="{gid}"[^>]*>', svg)[0]
+    return np.array([float(re.search(rf' {key}="([^"]*)"', tag)[1]) for key in ("x", "y", "width", "height")])
 
 
 def line_through(x, y):
@@ -72,15 +77,50 @@ def test_mean_lines_have_the_slope_that_was_put_in():
     assert high - low == pytest.approx(7.0, abs=1e-6)
 
 
-def test_the_scale_box_tells_the_truth(sample):
+@pytest.mark.parametrize(("kind", "chart"), [("profile", profile_chart), ("helix", helix_chart)])
+def test_the_scale_box_tells_the_truth(sample, kind, chart):
+    """The box is as large as it says, and on paper the ratios hold: the drawing is in millimetres."""
     gear = sample.gear_inspection().gear
-    svg = profile_chart(gear)
-    trace = gear.left.profile[0]
-    drawn, _ = paths(svg, "profile-left-1")
+    svg = chart(gear)
+    trace = getattr(gear.left, kind)[0]
+    drawn, _ = paths(svg, f"{kind}-left-1")
     per_um, _ = line_through(trace.deviation_um, drawn[:, 0])
     per_mm, _ = line_through(trace.position, drawn[:, 1])
-    box, _ = paths(svg, "profile-scale-box")
-    assert np.ptp(box, axis=0) == pytest.approx([5 * abs(per_um), 0.5 * per_mm], abs=DRAWN)
+    um, magnified = re.search(r">(\d+) µm  (\d+):1<", svg).groups()
+    mm, along = re.search(r">([\d.]+) mm  ([\d.:]+)<", svg).groups()
+    width, height = boxes(svg, f"{kind}-scale-box")[2:]
+    assert width == pytest.approx(float(um) * abs(per_um), abs=DRAWN)
+    assert height == pytest.approx(float(mm) * per_mm, abs=DRAWN)
+    # within the 0.01 mm that coordinates end at, over the range of the trace
+    assert abs(per_um) * 1e3 == pytest.approx(float(magnified), abs=1e3 * DRAWN / np.ptp(trace.deviation_um))
+    paper, part = map(float, along.split(":"))
+    assert per_mm == pytest.approx(paper / part, abs=DRAWN / np.ptp(trace.position))
+
+
+@pytest.mark.parametrize(("scale", "words"), [(500.0, "500:1"), (1.0, "1:1"), (0.5, "1:2"), (0.2, "1:5")])
+def test_ratios_as_draughtsmen_write_them(scale, words):
+    assert ratio(scale) == words
+
+
+def test_the_tolerance_band_is_as_wide_as_the_tolerance_about_the_middle_of_the_trace(sample):
+    gear = sample.gear_inspection().gear
+    svg = profile_chart(gear)
+    trace = gear.right.profile[1]
+    drawn, _ = paths(svg, "profile-right-6")
+    per_um, zero = line_through(trace.deviation_um, drawn[:, 0])
+    band, _ = paths(svg, "profile-right-6-band")
+    assert np.ptp(band[:, 0]) == pytest.approx(22.0 * per_um, abs=2 * DRAWN)
+    low, high = trace.evaluation
+    inside = trace.deviation_um[(trace.position >= low) & (trace.position <= high)]
+    middle = zero + per_um * (inside.min() + inside.max()) / 2
+    assert band[:, 0].mean() == pytest.approx(middle, abs=2 * DRAWN)
+
+
+def test_a_band_much_wider_than_the_traces_is_left_out(sample):
+    gear = sample.gear_inspection().gear
+    svg = profile_chart(replace(gear, tolerances_um={"profile_total": 2000.0}))
+    assert "-band" not in svg
+    assert "tolerance" not in svg
 
 
 def test_a_gap_in_a_trace_is_a_gap_in_the_line(sample):
@@ -117,9 +157,12 @@ def test_pitch_bars_and_curve(sample, side):
     gear = sample.gear_inspection().gear
     svg = pitch_chart(gear)
     flank = getattr(gear, side)
-    bars = [paths(svg, f"pitch-{side}-single-{k}")[0][:, 1] for k in range(1, 21)]
-    zero = bars[0][0]
-    heights = [(bar - zero)[np.abs(bar - zero).argmax()] for bar in bars]
+    bars = np.array([boxes(svg, f"pitch-{side}-single-{k}") for k in range(1, 21)])
+    # a bar hangs from or stands on zero, as the sign of its value is
+    above = flank.pitch_um > 0
+    zero = np.where(above, bars[:, 1] + bars[:, 3], bars[:, 1])
+    assert np.ptp(zero) < 2 * DRAWN
+    heights = np.where(above, bars[:, 3], -bars[:, 3])
     slope, offset = line_through(flank.pitch_um, heights)
     assert slope > 0
     assert abs(offset) < DRAWN
@@ -133,12 +176,12 @@ def test_section_is_magnified_about_the_true_polygon(sample):
     svg = section_chart(polygon)
     true, _ = paths(svg, "section-true")
     drawn, _ = paths(svg, "section-outline")
-    centre = true[:-1].mean(axis=0)
+    centre = true.mean(axis=0)
     per_mm = np.linalg.norm(true - centre, axis=1).mean() / (8.5 / np.cos(np.pi / 6))
     exact = polygon.section @ [1, 1j]
     face = np.rint(np.angle(exact) / (np.pi / 3))
     normal = np.exp(1j * np.pi / 3 * face)
-    at = (drawn[:-1] - centre) @ [1, 1j] / per_mm
+    at = (drawn - centre) @ [1, 1j] / per_mm
     deviation = (exact * np.conj(normal)).real - 8.5
     outwards, zero = line_through(deviation, (at * np.conj(normal)).real - 8.5)
     assert outwards == pytest.approx(50, abs=0.2)
@@ -189,7 +232,7 @@ def _runs(n, columns):
 
 def test_a_spike_of_one_sample_reaches_the_page(sample):
     recording = sample.recording(100_000)
-    svg = motion_chart(recording, frozenset("YC"))
+    svg = motion_chart(recording, frozenset("YC")).svg
     drawn, _ = paths(svg, "motion-Z-error")
     error = recording.setpoint[:, 1] - recording.actual[:, 1]
     time, kept = envelope(recording.time_s, error)
@@ -201,7 +244,7 @@ def test_a_spike_of_one_sample_reaches_the_page(sample):
 
 def test_spindles_are_drawn_as_speed(sample):
     recording = sample.recording(2000)
-    drawn, _ = paths(motion_chart(recording, frozenset("YC")), "motion-Y-setpoint")
+    drawn, _ = paths(motion_chart(recording, frozenset("YC")).svg, "motion-Y-setpoint")
     speed = np.diff(recording.setpoint[:, 2]) / np.diff(recording.time_s) / 6
     _, kept = envelope(recording.time_s[1:], speed)
     assert speed.max() == pytest.approx(300.0)

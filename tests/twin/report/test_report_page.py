@@ -219,7 +219,15 @@ def test_values_out_of_tolerance_are_marked(sample):
         for value, limit in ((side["profile"], 5.0), (side["helix"], 8.0))
     )
     assert expected == 2
-    assert page.attributes.count(("td", "class", "out")) == expected
+    traces = sum(
+        trace.total_um > limit
+        for side in (gear.left, gear.right)
+        for traces, limit in ((side.profile, 5.0), (side.helix, 8.0))
+        for trace in traces
+    )
+    # in the overview, then on the sheet: the results, and every tooth
+    assert page.attributes.count(("td", "class", "out")) == expected + traces
+    assert page.attributes.count(("td", "class", "result out")) == expected
 
 
 def test_a_long_program_is_cut_but_never_around_a_message(sample):
@@ -238,7 +246,7 @@ def test_a_long_program_is_cut_but_never_around_a_message(sample):
 
 
 def test_a_thinned_view_says_so(sample, monkeypatch):
-    monkeypatch.setattr("twin.report.page.MOST_TRIANGLES", 1000)
+    monkeypatch.setattr("twin.report.sections.part.MOST_TRIANGLES", 1000)
     part = sample.gear_part(around=30, along=20)
     page = Page(render(sample.report(part=part)))
     said = re.search(r"simplified: (\d+) of (\d+) triangles", page.words)

@@ -95,7 +95,7 @@ def test_the_script_unpacks_what_was_packed(sample, tmp_path):
             {"header": payload.header() | {"labels": [], "palette": "", "limitUm": 1}, "data": payload.data}
         )
     )
-    script = Path(twin.report.__file__).parent / "assets" / "viewer.js"
+    script = Path(twin.report.__file__).parent / "assets" / "sections" / "part.js"
     done = node.node(
         [str(NODE_HARNESS), str(script), str(tmp_path / "in.json"), str(tmp_path / "out.json")],
         return_completed_process=True,

@@ -23,9 +23,12 @@ const known = {
   "[data-colour]": null,
   ".reason": reason,
 };
+const stage = Object.assign(element(), {
+  querySelector: (selector) => (selector in known ? known[selector] : element()),
+});
 const box = Object.assign(element(), {
   querySelectorAll: () => [],
-  querySelector: (selector) => (selector in known ? known[selector] : element()),
+  querySelector: (selector) => (selector === ".stage" ? stage : selector in known ? known[selector] : element()),
 });
 function finish(name) {
   if (name !== "ready") {
@@ -35,7 +38,14 @@ function finish(name) {
   const [positions, normals, colours, triangles] = uploads;
   fs.writeFileSync(output, JSON.stringify({ positions, normals, colours, triangles }));
 }
-globalThis.document = { querySelectorAll: () => [box], createElement: element };
+globalThis.document = {
+  querySelectorAll: () => [box], createElement: element, addEventListener: () => {}, getElementById: () => null,
+};
+globalThis.IntersectionObserver = class {
+  constructor(seen) { this.seen = seen; }
+  observe() { this.seen([{ isIntersecting: true }], this); }
+  disconnect() {}
+};
 globalThis.ResizeObserver = class { observe() {} };
 globalThis.requestAnimationFrame = () => 0;
 globalThis.window = {};

@@ -294,6 +294,7 @@
 
     function draw() {
       waiting = false;
+      if (!canvas.clientWidth) return; /* on a page that is not shown */
       const ratio = Math.min(window.devicePixelRatio || 1, 2);
       const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
       const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
@@ -431,25 +432,50 @@
       view.coloured = colour.checked;
       redraw();
     });
+    /* a flank that was chosen among the maps is turned to the eye */
+    document.addEventListener("hobtwin:flank", ({ detail }) => {
+      Object.assign(view, { azimuth: detail.direction, elevation: 25, x: 0, y: 0 });
+      redraw();
+    });
   }
 
-  async function open(box) {
-    const canvas = box.querySelector("canvas");
+  /* The stage stands on the page that is shown, where that has a place for it. */
+  function follow(stage) {
+    document.addEventListener("hobtwin:tab", ({ detail }) => {
+      const slot = detail.panel.querySelector(".slot");
+      if (slot && !slot.contains(stage)) slot.append(stage);
+    });
+  }
+
+  async function open(box, stage) {
+    const canvas = stage.querySelector("canvas");
     const header = JSON.parse(box.querySelector("[data-header]").textContent);
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: true });
     if (!gl || typeof DecompressionStream === "undefined") throw new Error("this browser has no WebGL 2");
     const mesh = splitEdges(unpack(await inflate(box.querySelector("[data-mesh]").textContent.trim()), header));
     const paletteBytes = Uint8Array.from(atob(header.palette), (letter) => letter.charCodeAt(0));
-    const number = numbering(box.querySelector(".numbers"), header.labels);
+    const number = numbering(stage.querySelector(".numbers"), header.labels);
     const scale = { palette: paletteBytes, limitUm: header.limitUm };
-    connect(box, start(gl, canvas, mesh, scale, box.querySelector(".tip"), number));
+    connect(box, start(gl, canvas, mesh, scale, stage.querySelector(".tip"), number));
     box.classList.add("ready");
   }
 
+  function fail(box, stage, error) {
+    box.classList.add("failed");
+    stage.classList.add("failed");
+    const still = document.getElementById("still");
+    if (still) stage.querySelector(".fallback").src = still.src;
+    box.querySelector(".reason").textContent = `The part cannot be turned here: ${error.message}. A still picture stands in its place.`;
+  }
+
   for (const box of document.querySelectorAll(".viewer")) {
-    open(box).catch((error) => {
-      box.classList.add("failed");
-      box.querySelector(".reason").textContent = `The part cannot be turned here: ${error.message}. A still picture stands in its place.`;
-    });
+    const stage = box.querySelector(".stage");
+    /* taken apart when it is first seen, not before */
+    new IntersectionObserver(([entry], observer) => {
+      if (!entry.isIntersecting) return;
+      observer.disconnect();
+      open(box, stage).catch((error) => fail(box, stage, error));
+    }).observe(stage);
+    follow(stage);
   }
 })();

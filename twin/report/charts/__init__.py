@@ -1,0 +1,1 @@
+"""What an inspection measured and a recording holds, drawn."""
