@@ -78,8 +78,3 @@ class Recording:
             "tool_zero": self.tool_zero,
         }
         save_arrays(path, columns)
-
-
-def _texts(blocks: tuple[BlockRef, ...]) -> NDArray[np.str_]:
-    """(b, 3) file, line, text."""
-    return np.array([(b.file, str(b.line), b.text) for b in blocks], dtype=str).reshape(-1, 3)

@@ -11,13 +11,7 @@ def add_run(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> 
     run.add_argument("--out", type=Path, metavar="DIR", help="result folder (default: out/<job name>)")
     run.add_argument("--ideal", action="store_true", help="axes follow their setpoints exactly")
     run.add_argument("--cell-mm", type=float, metavar="MM", help="cell of the cutting grid (default: chosen)")
-    run.add_argument(
-        "--event",
-        action="append",
-        default=[],
-        metavar="EVENT",
-        help='what the operator does: "3.0 feed hold", "line 12 reset"',
-    )
+    _add_events(run)
     run.add_argument("--chips", action="store_true", help="what each tooth takes away; writes chips.npz")
     run.add_argument("--strict", action="store_true", help="warnings are findings too")
     run.add_argument("--quiet", action="store_true", help="no progress")
@@ -31,18 +25,22 @@ def add_check(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     check.add_argument("--setup", choices=("hobbing", "tilted"), help="of a bare program (default: hobbing)")
     check.add_argument("--parameter", action="append", default=[], metavar="8200#0=1")
     check.add_argument("--signal", action="append", default=[], metavar="NOZAGC=1")
-    check.add_argument(
+    _add_events(check)
+    check.add_argument("--keep-going", action="store_true", help="read on behind the first alarm")
+    check.add_argument("--trace", action="store_true", help="print the canonical trace")
+    check.add_argument("--strict", action="store_true", help="warnings are findings too")
+    check.add_argument("--format", choices=("text", "json", "github"), default="text")
+    return check
+
+
+def _add_events(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
         "--event",
         action="append",
         default=[],
         metavar="EVENT",
         help='what the operator does: "3.0 feed hold", "line 12 reset"',
     )
-    check.add_argument("--keep-going", action="store_true", help="read on behind the first alarm")
-    check.add_argument("--trace", action="store_true", help="print the canonical trace")
-    check.add_argument("--strict", action="store_true", help="warnings are findings too")
-    check.add_argument("--format", choices=("text", "json", "github"), default="text")
-    return check
 
 
 def add_inspect(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
