@@ -9,6 +9,7 @@ from twin.cutting.cut import CutResult
 from twin.errors import ExitCode
 from twin.inspection.result import Inspection, Verdict
 from twin.job.schema import Job
+from twin.regression.judge import Miss
 from twin.session import Session
 from twin.setup import Ready
 
@@ -43,9 +44,14 @@ class Outcome:
     """stage -> wall time [s]"""
     advice: tuple[Advice, ...] = ()
     """what job and program said before metal was cut"""
+    missed: tuple[Miss, ...] = ()
+    """what the job's `[expect]` did not get"""
 
     @property
     def exit_code(self) -> ExitCode:
-        """1 for an alarm or a part that is not what was asked for."""
+        """1 for an alarm, a part that is not what was asked for, or an expectation that is not met.
+
+        An alarm that the job expects is an alarm still.
+        """
         out = self.inspection.verdict is Verdict.OUT
-        return ExitCode.FINDING if self.session.alarms or out else ExitCode.FINE
+        return ExitCode.FINDING if self.session.alarms or out or self.missed else ExitCode.FINE

@@ -32,6 +32,7 @@ from twin.output.meshes import write_3mf, write_glb, write_stl
 from twin.output.provenance import provenance
 from twin.presets import cutters_of, settings_of
 from twin.progress import Reporter, Silent
+from twin.regression.judge import misses
 from twin.report.page import write_report
 from twin.session import CHUNK, record
 from twin.setup import make_ready
@@ -121,6 +122,12 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         chips=taken,
         times=watch.stages,
         advice=advice,
+        missed=misses(
+            job.expect,
+            to_json(inspection),
+            alarms=[alarm.number for alarm in session.alarms],
+            warnings=[warning.number for warning in (*session.warnings, *advice)],
+        ),
     )
     tell.stage("writing the report")
     with result_folder(out) as folder:

@@ -13,6 +13,7 @@ from twin.cutters.hob import Hob
 from twin.cutting.chips import Chips
 from twin.inspection.result import GearResult, Inspection, PolygonResult
 from twin.outcome import Outcome
+from twin.regression.judge import table
 from twin.report.data import Message, Part, Program, ReportData, Row, Severity
 from twin.report.words import headline
 
@@ -41,7 +42,16 @@ def messages(outcome: Outcome) -> tuple[Message, ...]:
     said: list[tuple[Severity, Alarm | Advice]] = [(Severity.ALARM, a) for a in outcome.session.alarms]
     said += [(Severity.WARNING, a) for a in (*outcome.session.warnings, *outcome.advice)]
     notes = [Message(severity=Severity.WARNING, number="CUT", text=note) for note in outcome.cut.notes]
-    return tuple(_message(severity, a) for severity, a in said) + tuple(notes)
+    missed = [
+        Message(
+            severity=Severity.WARNING,
+            number="EXPECT",
+            text=f"{miss.key} is not as expected",
+            found=f"{miss.got}, expected {miss.expected}",
+        )
+        for miss in outcome.missed
+    ]
+    return tuple(_message(severity, a) for severity, a in said) + tuple(notes) + tuple(missed)
 
 
 def lines(outcome: Outcome) -> list[str]:
@@ -50,7 +60,17 @@ def lines(outcome: Outcome) -> list[str]:
     said += [f"note: {note}" for note in outcome.cut.notes]
     if outcome.chips is not None:
         said.append(f"  {chip_words(outcome.chips)}")
-    return said + part_lines(outcome.inspection, messages(outcome))
+    return said + part_lines(outcome.inspection, messages(outcome)) + expected_lines(outcome)
+
+
+def expected_lines(outcome: Outcome) -> list[str]:
+    """Whether the part is what the job expects."""
+    count, missed = len(outcome.job.expect), len(outcome.missed)
+    if not count:
+        return []
+    if not missed:
+        return [f"As expected: {count} of {count} in [expect] of {outcome.job.path}"]
+    return [f"Not as expected: {missed} of {count} in [expect] of {outcome.job.path}", *table(outcome.missed)]
 
 
 def part_lines(inspection: Inspection, said_before: tuple[Message, ...] = ()) -> list[str]:

@@ -16,6 +16,7 @@ from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
 from twin.faults.table import Faults
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
+from twin.job.expect import Expectation, read_expectations
 from twin.job.locate import line_of
 from twin.job.schema import (
     MODELS,
@@ -33,7 +34,19 @@ T = TypeVar("T")
 
 TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead, "disc_wheel": DiscWheel}
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
-TABLES = ("machine", "work", "setup", "tool", "tools", "program", "nominal", "inspection", "faults", "events")
+TABLES = (
+    "machine",
+    "work",
+    "setup",
+    "tool",
+    "tools",
+    "program",
+    "nominal",
+    "inspection",
+    "faults",
+    "events",
+    "expect",
+)
 
 
 def read_job(path: Path) -> Job:
@@ -103,6 +116,7 @@ class _Reader:
             inspection=self._table(InspectionTable, ("inspection",)),
             faults=self._table(Faults, ("faults",)),
             events=self._events(),
+            expect=self._expect(),
         )
         model = job.machine.model
         at_hand = re.fullmatch(r"\w+", model) or "/" in model
@@ -200,6 +214,17 @@ class _Reader:
             if (event.time_s is None) == (event.line is None):
                 self._fail(("events",), "an event has its time_s or its line", "one of the two", nth=nth)
         return events
+
+    def _expect(self) -> tuple[Expectation, ...]:
+        def fault(way: tuple[str, ...], text: str, valid: str) -> InputError:
+            # "flanks.left.…" may be written as one quoted key
+            paths = (("expect", *way), ("expect", ".".join(way)))
+            line = max(line_of(self.text, path) or 0 for path in paths)
+            return InputError(
+                text, place=Place(file=str(self.file), line=line or None), remedy=f"valid: {valid}"
+            )
+
+        return read_expectations(self._raw(("expect",)), fault)
 
     def _tagged(self, kinds: Mapping[str, type], path: tuple[str, ...]) -> Any:
         raw = self._raw(path)

@@ -14,6 +14,7 @@ from twin.cutting.blank import Blank
 from twin.errors import Place
 from twin.faults.table import Faults
 from twin.inspection.nominal import Nominal
+from twin.job.expect import Expectation
 from twin.job.locate import line_of
 
 MODELS = Path(models.__file__).parent
@@ -133,6 +134,8 @@ class Job:
     inspection: InspectionTable
     faults: Faults = field(default_factory=Faults)
     events: tuple[EventTable, ...] = ()
+    expect: tuple[Expectation, ...] = ()
+    """what a run must come to"""
 
     @property
     def model_folder(self) -> Path:

@@ -1,0 +1,33 @@
+import importlib.util
+import sys
+from pathlib import Path
+
+import pytest
+
+from twin.inspection.nominal import GearNominal
+
+
+@pytest.fixture(scope="session")
+def parts():
+    """The module of analytic meshes of the inspection's tests."""
+    path = Path(__file__).parents[1] / "inspection" / "analytic_parts.py"
+    spec = importlib.util.spec_from_file_location("analytic_parts", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["analytic_parts"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def named():
+    """Nominal gears."""
+
+    def make(teeth, module, helix_deg=0.0, accuracy_class=None):
+        return GearNominal(
+            number_of_teeth=teeth,
+            normal_module_mm=module,
+            helix_angle_deg=helix_deg,
+            accuracy_class=accuracy_class,
+        )
+
+    return make

@@ -1,0 +1,1 @@
+"""A shop's regression suite: jobs that say what they must come to."""
