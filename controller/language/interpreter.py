@@ -19,7 +19,7 @@ from controller.language.macro.system import SystemVariables
 from controller.language.macro.variables import Variables, empty_locals
 from controller.language.modal import Modal
 from controller.language.offsets import Offsets
-from controller.language.plain_lane import PlainLane
+from controller.language.plain_lane import Blank, PlainLane
 from controller.language.quantities import INCH_DIGITS, METRIC_DIGITS, Reader
 from controller.language.source import Program, parse_program
 from controller.language.syntax import Block, Line, OpenBlock, build_block, read_line
@@ -54,7 +54,6 @@ class Interpreter:
     def __init__(
         self, program: Program, machine: MachineData, offsets: Offsets, signals: Mapping[str, bool]
     ) -> None:
-        self.modal = Modal(tool_shift=offsets.of_tool(None, machine))
         self.statements = False
         """whether macro statements without a command give steps of their own, for events at their lines"""
         self._program = program
@@ -69,9 +68,14 @@ class Interpreter:
         self._flow = Flow(program, self._variables)
         self._lines: dict[int, Line] = {}
         self._lane = PlainLane(machine)
-        self._lane_open = self._lane.enter(self.modal)
+        self._lane_open = self._lane.enter(Modal(tool_shift=offsets.of_tool(None, machine)))
         self._sequel: Iterator[Step] | None = None
         self._still = 0
+
+    @property
+    def modal(self) -> Modal:
+        """The modal state between blocks."""
+        return self._lane.modal
 
     @property
     def offsets(self) -> Offsets:
@@ -94,11 +98,14 @@ class Interpreter:
             index = flow.cursor
             if index >= flow.frame.end:
                 return self._text_end(index)
-            if self._lane_open and (move := self._lane.read(self._program.lines[index])):
-                self._count(index)
+            if self._lane_open and (
+                read := self._lane.read(self._program.lines[index], motion.registers.absolute)
+            ):
                 flow.cursor = index + 1
-                self.modal = self._lane.modal
-                return Step(index=index, span=self._program.span(index, 1), commands=(move,))
+                if read is Blank.BLANK:
+                    continue
+                self._count(index)
+                return Step(index=index, span=self._program.span(index, 1), commands=(read,))
             line = self._line(index)
             if self._passed_over(line):
                 flow.cursor = index + 1
@@ -258,7 +265,6 @@ class Interpreter:
             self._sequel = self._steps(draft.sequel, draft.index)
 
     def _enter(self, modal: Modal) -> None:
-        self.modal = modal
         self._lane_open = self._lane.enter(modal)
 
     def _steps(self, sequel: Iterator[tuple[int | None, Command]], index: int) -> Iterator[Step]:

@@ -1,6 +1,7 @@
 """What the parameters say about the machine: axes, spindles and the inclined pair, checked once at start."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from controller.laws.inclined import InclinedPair, in_dead_band
@@ -85,6 +86,8 @@ class MachineData:
     position_switches: tuple[PositionSwitch, ...]
     """those that have an axis"""
     parameters: Parameters
+    basic: Mapping[str, int]
+    """X, Y, Z -> column of the linear axis that is it (parameter 1022)"""
     together: int
     """most axes that one block may move together (parameter 9004)"""
 
@@ -119,8 +122,18 @@ def machine_data(parameters: Parameters) -> MachineData:
         tool_spindle=_rotary_column(axes, parameters.integer(9002)),
         position_switches=_position_switches(parameters, axes),
         parameters=parameters,
+        basic=_basic_axes(parameters, axes),
         together=parameters.integer(9004),
     )
+
+
+def _basic_axes(parameters: Parameters, axes: tuple[Axis, ...]) -> dict[str, int]:
+    basic: dict[str, int] = {}
+    for column, delivered in enumerate(parameters.letters):
+        number = parameters.integer(1022, delivered)
+        if number and not axes[column].rotary:
+            basic.setdefault("XYZ"[number - 1], column)
+    return basic
 
 
 def _rotary_column(axes: tuple[Axis, ...], number: int) -> int | None:

@@ -7,39 +7,13 @@ from controller.language.draft import Draft
 from controller.language.families.feed_blocks import feed_in_force
 from controller.language.lexer import Word
 from controller.language.sync_checks import check_axes
+from controller.laws.arcs import NOTHING, Point, centre_from_offsets, centre_from_radius
 from controller.tables.codes import Group, g_name
 
 G02, G17, G18, G19 = 20, 170, 180, 190
 _BASIC = {G17: ("X", "Y"), G18: ("Z", "X"), G19: ("Y", "Z")}
 """plane -> first and second basic axis, right-handed"""
-_BASIC_AXES = {"X": 1, "Y": 2, "Z": 3}
-"""as parameter 1022 names them"""
 _CENTRE_LETTER = {"X": "I", "Y": "J", "Z": "K"}
-Point = tuple[float, float]
-_NOTHING = 1e-9
-"""[mm] far below the least increment"""
-
-
-def centre_by_radius(end: Point, radius: float, *, clockwise: bool) -> Point | None:
-    """Centre of the arc from the origin to `end` in a right-handed plane; None where there is none.
-
-    A positive radius means the arc up to 180 degrees, a negative one the longer.
-    """
-    chord = math.hypot(*end)
-    if chord < _NOTHING or chord > 2.0 * abs(radius):
-        return None
-    height = math.sqrt(max(0.0, radius**2 - (chord / 2.0) ** 2))
-    side = height / chord * (-1.0 if clockwise else 1.0) * math.copysign(1.0, radius)
-    return end[0] / 2.0 - side * end[1], end[1] / 2.0 + side * end[0]
-
-
-def equidistant(centre: Point, end: Point) -> Point:
-    """The point nearest to `centre` as far from the origin as from `end`: rounded words, a true circle."""
-    chord = math.hypot(*end)
-    if chord < _NOTHING:
-        return centre
-    along = (centre[0] * end[0] + centre[1] * end[1]) / chord - chord / 2.0
-    return centre[0] - along * end[0] / chord, centre[1] - along * end[1] / chord
 
 
 def arc(draft: Draft) -> None:
@@ -93,15 +67,11 @@ def _plane(draft: Draft) -> tuple[tuple[int, int], tuple[str, str]]:
     letters = _BASIC[code]
     columns: list[int] = []
     for letter in letters:
-        number = _BASIC_AXES[letter]
-        for column, delivered in enumerate(draft.machine.parameters.letters):
-            basic = draft.machine.parameters.integer(1022, delivered) == number
-            if basic and not draft.machine.axes[column].rotary:
-                columns.append(column)
-                break
-        else:
+        column = draft.machine.basic.get(letter)
+        if column is None:
             place = draft.code_word(code) or draft.code_word(draft.modal.codes[Group.MOTION])
             raise draft.alarm("PS0021", f"an arc in {g_name(code)} without linear axis {letter}", place)
+        columns.append(column)
     return (columns[0], columns[1]), letters
 
 
@@ -112,30 +82,29 @@ def _by_radius(
         if one:
             raise draft.alarm("PS0022", f"{one} beside {word}", one, valid="either R or I J K")
     radius = draft.reader.length(word)
-    chord = math.hypot(*end)
-    if chord < _NOTHING or radius == 0.0:
-        valid = "an end away from the start; I and K for a full circle"
-        raise draft.alarm("PS0020", f"{word} over a chord of {chord:g} mm", word, valid=valid)
-    if 0.0 < chord / 2.0 - abs(radius) <= _tolerance(draft):
-        return end[0] / 2.0, end[1] / 2.0
-    centre = centre_by_radius(end, radius, clockwise=clockwise)
+    centre = centre_from_radius(end, radius, clockwise=clockwise, tolerance=_tolerance(draft))
     if centre is None:
+        chord = math.hypot(*end)
         valid = f"a radius of at least {chord / 2.0:.3f} mm"
+        if chord < NOTHING or radius == 0.0:
+            valid = "an end away from the start; I and K for a full circle"
         raise draft.alarm("PS0020", f"{word} over a chord of {chord:.3f} mm", word, valid=valid)
     return centre
 
 
 def _by_centre(draft: Draft, end: Point, words: list[Word | None]) -> Point:
     first, second = (draft.reader.length(word) if word else 0.0 for word in words)
-    start_radius = math.hypot(first, second)
-    end_radius = math.hypot(end[0] - first, end[1] - second)
-    word = next(word for word in words if word)
-    if start_radius == 0.0:
-        raise draft.alarm("PS0022", "a radius of 0", word, valid="I J K from the start point to the centre")
-    if abs(start_radius - end_radius) > _tolerance(draft):
+    centre = centre_from_offsets((first, second), end, tolerance=_tolerance(draft))
+    if centre is None:
+        word = next(word for word in words if word)
+        start_radius = math.hypot(first, second)
+        if start_radius == 0.0:
+            valid = "I J K from the start point to the centre"
+            raise draft.alarm("PS0022", "a radius of 0", word, valid=valid)
+        end_radius = math.hypot(end[0] - first, end[1] - second)
         found = f"a radius of {start_radius:.3f} mm at the start, {end_radius:.3f} at the end"
         raise draft.alarm("PS0020", found, word, valid=f"within {_tolerance(draft):g} mm (parameter 3410)")
-    return equidistant((first, second), end)
+    return centre
 
 
 def _tolerance(draft: Draft) -> float:

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from controller.commands import Feed
 from controller.language.draft import Draft
-from controller.language.modal import Modal
 from controller.laws.gearbox import MM_PER_INCH
 from controller.tables.codes import Group, g_name
 
@@ -30,19 +29,14 @@ def interpret_feed(draft: Draft, mode_before: int) -> None:
         draft.modal = replace(draft.modal, feed=value, feed_inch=draft.reader.inch)
 
 
-def feed_per_minute(modal: Modal, *, linear: bool) -> Feed:
-    """The feed of G98 in force [mm/s | deg/s]; of rotary axes alone F counts degrees also in inches."""
-    return Feed(value=(modal.feed or 0.0) * _unit(modal, linear=linear) / 60.0)
+def feed_per_minute(value: float, *, inch: bool) -> Feed:
+    """The feed of an F by G98 [mm/s | deg/s]; `inch` where it counts inches."""
+    return Feed(value=value * (MM_PER_INCH if inch else 1.0) / 60.0)
 
 
-def feed_per_revolution(modal: Modal, *, linear: bool, measured: bool) -> Feed:
-    """The feed of G99 in force [mm | deg per turn of the work]."""
-    value = (modal.feed or 0.0) * _unit(modal, linear=linear)
-    return Feed(value=value, per_revolution=True, measured=measured)
-
-
-def _unit(modal: Modal, *, linear: bool) -> float:
-    return MM_PER_INCH if modal.feed_inch and linear else 1.0
+def feed_per_revolution(value: float, *, inch: bool, measured: bool) -> Feed:
+    """The feed of an F by G99 [mm | deg per turn of the work]."""
+    return Feed(value=value * (MM_PER_INCH if inch else 1.0), per_revolution=True, measured=measured)
 
 
 def feed_in_force(draft: Draft, columns: Iterable[int]) -> Feed:
@@ -52,14 +46,15 @@ def feed_in_force(draft: Draft, columns: Iterable[int]) -> Feed:
     if not modal.feed:
         found = "F0" if modal.feed is not None else f"no F since {g_name(modal.codes[Group.FEED])}"
         raise draft.alarm("PS0011", found, place)
-    linear = any(not draft.machine.axes[column].rotary for column in columns)
+    # of rotary axes alone F counts degrees also in inches
+    inch = modal.feed_inch and any(not draft.machine.axes[column].rotary for column in columns)
     if not modal.per_revolution:
-        return feed_per_minute(modal, linear=linear)
+        return feed_per_minute(modal.feed, inch=inch)
     check_turning(draft, f"F{modal.feed:g} by G99")
     measured = modal.gear is None or not draft.machine.parameters.bit(201, 2)
     if measured:
         check_encoder(draft, f"F{modal.feed:g} by G99")
-    return feed_per_revolution(modal, linear=linear, measured=measured)
+    return feed_per_revolution(modal.feed, inch=inch, measured=measured)
 
 
 def check_turning(draft: Draft, what: str) -> None:

@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from controller.commands import Arc, Skip, Thread
-from controller.language.families.arc_blocks import centre_by_radius, equidistant
+from controller.laws.arcs import centre_by_radius, equidistant
 
 COORDINATE = st.floats(-500, 500, allow_nan=False)
 
