@@ -9,7 +9,7 @@ from pathlib import Path
 import manifold3d
 import numpy as np
 
-from benchmarks.reading import reading
+from benchmarks.reading import program_of, reading
 from controller.cnc import Controller
 from controller.dry_run import dry_run
 from controller.language.source import load_program, parse_program
@@ -31,14 +31,20 @@ def say(**figures: object) -> None:
     print(json.dumps({k: round(v, 4) if isinstance(v, float) else v for k, v in figures.items()}), flush=True)
 
 
-def controller_blocks(blocks: int = 20_000) -> None:
-    """Lexing, interpreting and planning of short G01 blocks."""
-    lines = "\n".join(f"N{n} G01 X{100 + n % 7}.{n % 10} Z-{n % 90}.5 F200." for n in range(blocks))
-    program = parse_program(f"O0001\n{lines}\nM30\n", file="bench.nc")
+def controller_blocks(kind: str, blocks: int) -> None:
+    """Lexing, interpreting and planning; the peak of memory is that of the process so far."""
+    program = parse_program(program_of(kind, blocks), file="bench.nc")
     start = time.perf_counter()
     found = dry_run(program, delivered("hobbing"))
     seconds = time.perf_counter() - start
-    say(case="check", blocks=blocks, seconds=seconds, blocks_per_s=blocks / seconds, alarms=len(found.alarms))
+    say(
+        case="check",
+        kind=kind,
+        blocks=blocks,
+        seconds=seconds,
+        blocks_per_s=blocks / seconds,
+        alarms=len(found.alarms),
+    )
 
 
 def machine_ticks(scene: str = "hexagon_af17") -> None:
@@ -119,9 +125,11 @@ def boolean_of_lofts(count: int = 20) -> float:
     return time.perf_counter() - start
 
 
+controller_blocks("plain", 100_000)
+controller_blocks("mixed", 100_000)
 for figures in reading():
     say(**figures)
-controller_blocks()
+controller_blocks("plain", 1_000_000)
 machine_ticks()
 for name in ("hexagon_af17", "spur_m2_z20"):
     kernel(name)

@@ -183,6 +183,9 @@ def _leaving_on_arc(
     """Where an arc leaves the box; an axis already outside may come back, not go further out."""
     first: _Found | None = None
     for axis, wave in enumerate(waves):
+        low, high = wave.bounds(sweep)
+        if lower[axis] <= low and high <= upper[axis]:
+            continue
         start = wave.at(0.0)
         for bound, sign in ((max(upper[axis], start), 1.0), (min(lower[axis], start), -1.0)):
             if not math.isfinite(bound):

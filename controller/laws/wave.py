@@ -43,6 +43,11 @@ class Wave:
             self.rate + factor * other.rate,
         )
 
+    def bounds(self, sweep: float) -> tuple[float, float]:
+        """Values [mm] that it neither falls below nor exceeds, 0 <= u <= sweep; of a short arc wide ones."""
+        amplitude, drift = math.hypot(self.cosine, self.sine), self.rate * sweep
+        return self.centre - amplitude + min(drift, 0.0), self.centre + amplitude + max(drift, 0.0)
+
     def turning(self, sweep: float) -> list[float]:
         """Where the coordinate is stationary, ascending, 0 < u < sweep."""
         amplitude = math.hypot(self.cosine, self.sine)

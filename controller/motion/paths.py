@@ -190,7 +190,8 @@ class Paths(Axes):
             machine=machine,
             slides=slides,
         )
-        path.top_speed, path.acceleration = self._spare(path.shares, 1.0, top, rate)
+        if self.timeline.epochs:
+            path.top_speed, path.acceleration = self._spare(path.shares, 1.0, top, rate)
         return path
 
     def _carried_out(

@@ -117,6 +117,12 @@ def test_a_wave_is_monotone_between_its_turns(one: Wave, end: float) -> None:
         assert all(d >= -1e-9 for d in rising) or all(d <= 1e-9 for d in rising)
 
 
+@given(wave, st.floats(0.01, 6.0), st.floats(0.0, 1.0))
+def test_a_wave_stays_within_its_bounds(one: Wave, end: float, part: float) -> None:
+    low, high = one.bounds(end)
+    assert low - 1e-9 <= one.at(part * end) <= high + 1e-9
+
+
 @given(wave, sweep, coordinate)
 def test_a_wave_has_a_value_exactly_where_its_sign_changes(one: Wave, end: float, value: float) -> None:
     places = one.reaches(value, end)
