@@ -11,6 +11,7 @@ from controller.cnc import Controller
 from controller.dry_run import DryRun, dry_run
 from controller.language.offsets import Offsets
 from controller.language.source import parse_program
+from controller.operator.actions import read_event
 from controller.tables.parameters import delivered
 
 
@@ -86,6 +87,47 @@ def drive() -> Callable[..., Driven]:
         )
 
     return _drive
+
+
+@pytest.fixture(scope="session")
+def act() -> Callable[..., DryRun]:
+    """A program with what the operator does: events as they are typed."""
+
+    def _act(text: str, *events: str, setup: str = "hobbing", parameters=None, signals=None) -> DryRun:
+        return dry_run(
+            parse_program(text),
+            delivered(setup, parameters),
+            signals=signals,
+            events=[read_event(event) for event in events],
+        )
+
+    return _act
+
+
+@pytest.fixture(scope="session")
+def sampled() -> Callable[..., tuple[Controller, np.ndarray, np.ndarray]]:
+    """Setpoints (n, axes) and sync (n,) of a run on ideal drives, with what the operator does."""
+
+    def _sampled(text: str, *events: str, setup: str = "hobbing", parameters=None):
+        controller = Controller(
+            parse_program(text),
+            parameters=delivered(setup, parameters),
+            events=[read_event(event) for event in events],
+        )
+        rows, sync = [np.zeros((0, len(controller.axes)))], []
+        while (chunk := controller.propose()).ticks:
+            rows.append(chunk.setpoint)
+            sync.append(chunk.sync)
+            controller.commit(Feedback(ticks=chunk.ticks, setpoint=chunk.setpoint, actual=chunk.setpoint))
+        return controller, np.concatenate(rows), np.concatenate(sync)
+
+    return _sampled
+
+
+@pytest.fixture(scope="session")
+def warned() -> Callable[[DryRun], list[str]]:
+    """The numbers of the warnings."""
+    return lambda result: [warning.number for warning in result.warnings]
 
 
 @pytest.fixture
