@@ -3,12 +3,13 @@
 import math
 from dataclasses import dataclass
 
+from twin.advice.gear_law import feed_mark, reference_diameter
 from twin.cutters.hob import Hob
 from twin.errors import InputError
 from twin.inspection.nominal import GearNominal
 from twin.inspection.tolerances import GearSize, gear_tolerance
 from twin.starter.approach import clearance
-from twin.starter.plan import Draft, program_text, spindle_speed, toml_number, up, word
+from twin.starter.plan import Draft, highest_speeds, program_text, spindle_speed, toml_number, up, word
 
 HOBS: tuple[tuple[float, float, int], ...] = (
     (1.0, 50.0, 12),
@@ -32,8 +33,6 @@ BORE = 0.3
 """Bore over root diameter."""
 BESIDE = 2.0
 """[mm] beside the blank and above it before the hob comes near"""
-TOOL_RPM, WORK_RPM = 4000.0, 2000.0
-"""Of the machine as delivered."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +72,7 @@ def draft_gear(order: GearOrder) -> Draft:
     )
     hob = _hob(order)
     beta = math.radians(order.helix_deg)
-    pitch = order.teeth * order.module / math.cos(beta)
+    pitch = reference_diameter(teeth=order.teeth, module=order.module, helix=beta)
     tip = pitch + 2.0 * order.module * (1.0 + order.profile_shift)
     root = pitch - 2.0 * order.module * (1.25 - order.profile_shift)
     width = order.width if order.width is not None else 10.0 * order.module
@@ -89,13 +88,21 @@ def draft_gear(order: GearOrder) -> Draft:
         swivel=beta - hob.lead_angle,
     )
     beside = up(aside + BESIDE, 0.5)
-    highest = min(TOOL_RPM, WORK_RPM * order.teeth / order.starts)
+    work_rpm, tool_rpm = highest_speeds()
+    highest = min(tool_rpm, work_rpm * order.teeth / order.starts)
     speed = spindle_speed(order.cutting_speed, hob.outside_diameter_mm, highest)
-    feed = order.feed if order.feed is not None else _feed(order, hob, pitch, width)
+    size = GearSize(
+        number_of_teeth=order.teeth,
+        reference_diameter=pitch,
+        normal_module=order.module,
+        face_width=width,
+        helix_angle=order.helix_deg,
+    )
+    feed = order.feed if order.feed is not None else _feed(order, hob, size)
     program = _program(order, root, up(tip + 2.0 * BESIDE, 1.0), (beside, -width - beside), (speed, feed))
     shape = f"β {abs(order.helix_deg):g}° {'right' if beta > 0 else 'left'}" if beta else "spur"
     return Draft(
-        job=_job(nominal, hob, tip, width, bore),
+        job=_job(nominal, hob, tip, width, bore) + _expect(nominal, size),
         program=program,
         summary=f"gear m{order.module:g} z{order.teeth} {shape}, {width:g} mm wide: S{speed}, F{feed:g}",
     )
@@ -132,21 +139,16 @@ def _hob(order: GearOrder) -> Hob:
     )
 
 
-def _feed(order: GearOrder, hob: Hob, pitch: float, width: float) -> float:
-    """The largest feed whose marks stay within their share of the helix form tolerance.
-
-    δ_x = (f / cos β)² sin α_n / (4 d_0) at the hob's pitch cylinder.
-    """
-    size = GearSize(
-        number_of_teeth=order.teeth,
-        reference_diameter=pitch,
-        normal_module=order.module,
-        face_width=width,
-        helix_angle=order.helix_deg,
-    )
+def _feed(order: GearOrder, hob: Hob, size: GearSize) -> float:
+    """The largest feed whose marks, at the hob's pitch cylinder, hold their share of the tolerance."""
     allowed = MARK_SHARE * gear_tolerance("helix_form", size, order.accuracy_class) / 1000.0
-    sine = math.sin(math.radians(order.pressure_angle_deg))
-    feed = math.cos(math.radians(order.helix_deg)) * math.sqrt(allowed * 4.0 * hob.pitch_diameter / sine)
+    unit = feed_mark(
+        feed=1.0,
+        hob_radius=hob.pitch_diameter / 2.0,
+        pressure=math.radians(order.pressure_angle_deg),
+        helix=math.radians(order.helix_deg),
+    )
+    feed = math.sqrt(allowed / unit)
     return max(FEED_STEP, min(LARGEST_FEED, round(FEED_STEP * int(feed / FEED_STEP), 3)))
 
 
@@ -206,4 +208,20 @@ helix_angle_deg = {number(nominal.helix_angle_deg)}
 normal_pressure_angle_deg = {number(nominal.normal_pressure_angle_deg)}
 profile_shift = {number(nominal.profile_shift)}
 accuracy_class = {nominal.accuracy_class}
+"""
+
+
+def _expect(nominal: GearNominal, size: GearSize) -> str:
+    """What the order says of the part: the helix within its tolerance over the face width."""
+    helix = nominal.helix_angle_deg
+    slope = gear_tolerance("helix_slope", size, nominal.accuracy_class or 8) / 1000.0
+    angle = math.degrees(slope / size.face_width) * math.cos(math.radians(helix)) ** 2
+    hand = "spur" if helix == 0 else "right" if helix > 0 else "left"
+    return f"""
+[expect]
+number_of_teeth = {nominal.number_of_teeth}
+hand = "{hand}"
+helix_angle_deg = {{value = {toml_number(helix)}, tolerance = {toml_number(round(angle, 4))}}}
+verdict = "in"
+alarms = []
 """

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from controller.tables.parameters import delivered
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Draft:
@@ -14,6 +16,12 @@ class Draft:
     """text of program.nc"""
     summary: str
     """one line for the user"""
+
+
+def highest_speeds() -> tuple[float, float]:
+    """Of work and tool spindle [rpm] as the machine is delivered (parameter 3772)."""
+    parameters = delivered("hobbing")
+    return parameters.number(3772, "C"), parameters.number(3772, "Y")
 
 
 def spindle_speed(cutting_speed: float, diameter: float, highest: float) -> int:

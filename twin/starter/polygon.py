@@ -1,18 +1,16 @@
 """A polygon to be turned with a head of inserts."""
 
-import math
 from dataclasses import dataclass
 
+from twin.advice.polygon_law import Face, face
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import InputError
-from twin.starter.plan import Draft, program_text, toml_number, up, word
+from twin.starter.plan import Draft, highest_speeds, program_text, toml_number, up, word
 
 BESIDE = 2.0
 """[mm] beside the blank and above it"""
 ROOM = 0.1
 """[mm] of blank outside the corners"""
-TOOL_RPM, WORK_RPM = 4000.0, 2000.0
-"""Of the machine as delivered."""
 RATIO = 2
 """Q / P of slightly convex faces; every larger one makes them concave (geometry.md 3)."""
 
@@ -42,8 +40,10 @@ def draft_polygon(order: PolygonOrder) -> Draft:
     inserts = _inserts(order)
     head = PolygonHead(inserts=inserts, tip_radius_mm=order.tip_radius)
     ratio = order.sides // inserts
-    speed = min(order.speed, int(TOOL_RPM / ratio), int(WORK_RPM))
-    blank = up(_corners(order, ratio) + ROOM, 0.1)
+    work_rpm, tool_rpm = highest_speeds()
+    speed = min(order.speed, int(tool_rpm / ratio), int(work_rpm))
+    faces = _faces(order, ratio)
+    blank = up(faces.across_corners + ROOM, 0.1)
     above = up(blank + 2.0 * BESIDE, 1.0)
     half = head.edge_width_mm / 2.0
     rows = (
@@ -60,7 +60,7 @@ def draft_polygon(order: PolygonOrder) -> Draft:
         ("M30", ""),
     )
     return Draft(
-        job=_job(order, head, blank),
+        job=_job(order, head, blank) + _expect(order, faces),
         program=program_text(f"{order.sides} SIDES {order.across_flats:g} A/F", rows),
         summary=f"{order.sides} sides, {order.across_flats:g} mm across flats: "
         f"P{inserts} Q{order.sides} S{speed}",
@@ -74,7 +74,7 @@ def _check(order: PolygonOrder) -> None:
         ("--length", order.length, 0.5, 300.0),
         ("--tip-radius", order.tip_radius, 10.0, 200.0),
         ("--inserts", order.inserts if order.inserts is not None else 1, 1, 20),
-        ("--speed", order.speed, 1, WORK_RPM),
+        ("--speed", order.speed, 1, highest_speeds()[0]),
         ("--feed", order.feed, 0.01, 10.0),
     )
     for name, value, low, high in limits:
@@ -94,26 +94,31 @@ def _inserts(order: PolygonOrder) -> int:
     return order.inserts
 
 
-def _corners(order: PolygonOrder, ratio: int) -> float:
-    """Largest diameter that the head leaves: where the curves of neighbouring inserts cross.
-
-    The tip's curve, geometry.md 3: w(θ) = A e^(−jθ) + R e^(j (i − 1) θ), nearest to the axis at A − R.
-    """
-    distance = order.across_flats / 2.0 + order.tip_radius
-    corner = math.pi / order.sides
-    low, high = 0.0, math.pi / max(ratio, 2)
-    for _ in range(60):
-        theta = 0.5 * (low + high)
-        w = _tip(distance, order.tip_radius, ratio, theta)
-        low, high = (theta, high) if abs(math.atan2(w[1], w[0])) < corner else (low, theta)
-    return 2.0 * math.hypot(*_tip(distance, order.tip_radius, ratio, low))
+def _faces(order: PolygonOrder, ratio: int) -> Face:
+    """The faces that the head leaves. Raises InputError where they meet in no corner."""
+    found = face(
+        across_flats=order.across_flats, radius=order.tip_radius, ratio=float(ratio), sides=order.sides
+    )
+    if found is None:
+        raise InputError(
+            f"a head of {order.tip_radius:g} mm turns no corners between {order.sides} such faces",
+            remedy="another --tip-radius or --inserts",
+        )
+    return found
 
 
-def _tip(distance: float, radius: float, ratio: int, theta: float) -> tuple[float, float]:
-    """Tip in the work frame, the face's middle on +x; insert at its nearest for θ = 0."""
-    x = distance * math.cos(theta) - radius * math.cos((ratio - 1) * theta)
-    y = -distance * math.sin(theta) - radius * math.sin((ratio - 1) * theta)
-    return x, y
+def _expect(order: PolygonOrder, faces: Face) -> str:
+    """Theory's own figures; concave faces may be out of tolerance, which the order did not ask about."""
+    bow = 1000.0 * faces.bow
+    verdict = "" if faces.concave else 'verdict = "in"\n'
+    return f"""
+[expect]   # theory: faces {"concave" if faces.concave else "convex"} by {abs(bow):.2f} µm
+number_of_sides = {order.sides}
+across_flats_mm = {{value = {toml_number(order.across_flats)}, tolerance = 0.005}}
+bow_um = {{value = {toml_number(round(bow, 2))}, tolerance = {toml_number(round(1.0 + 0.05 * abs(bow), 2))}}}
+hand = "none"
+{verdict}alarms = []
+"""
 
 
 def _job(order: PolygonOrder, head: PolygonHead, blank: float) -> str:

@@ -15,7 +15,7 @@ from twin.job import read_job
 from twin.presets import cutters_of, settings_of
 from twin.starter.approach import clearance
 from twin.starter.gear import GearOrder, draft_gear
-from twin.starter.polygon import PolygonOrder, _corners, draft_polygon
+from twin.starter.polygon import PolygonOrder, draft_polygon
 
 few = settings(derandomize=True, deadline=None, max_examples=25, database=None)
 
@@ -36,10 +36,11 @@ def checked(job):
     ("across", "inserts", "sides", "corners"),
     [(17, 3, 6, 19.600), (17, 2, 6, 19.822), (17, 1, 6, 20.079), (10, 2, 4, 14.118)],
 )
-def test_corners_of_the_table(across, inserts, sides, corners):
+def test_the_blank_has_room_for_the_corners_of_the_table(across, inserts, sides, corners, tmp_path):
     """geometry.md 3: across corners."""
-    order = PolygonOrder(sides=sides, across_flats=across, tip_radius=40.0)
-    assert _corners(order, sides // inserts) == pytest.approx(corners, abs=5e-4)
+    order = PolygonOrder(sides=sides, across_flats=across, tip_radius=40.0, inserts=inserts)
+    blank = written(draft_polygon(order), tmp_path).work.diameter_mm
+    assert corners + 0.0995 <= blank <= corners + 0.2005
 
 
 def test_a_spur_hob_is_clear_at_the_textbook_distance():
