@@ -42,7 +42,7 @@ def all_files(out):
     ],
 )
 def test_a_gear_scene_cuts_the_gear_it_names(tmp_path, scene, helix, hand):
-    code, found, out = run(tmp_path, scene, "--ideal", "--cell-mm", "0.18")
+    code, found, out = run(tmp_path, scene, "--ideal", "--cell-mm", "0.22")
     assert code == 0
     assert found["kind"] == "gear"
     assert found["verdict"] == "in"

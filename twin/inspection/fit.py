@@ -13,9 +13,9 @@ from twin.errors import InputError, PartError
 from twin.inspection.involute import Involute, geometry, involute
 from twin.inspection.nominal import GearNominal
 from twin.inspection.recognise import Outline, phase_sums
-from twin.inspection.sections import circle_crossings, plane_segments_in_parts
+from twin.inspection.sections import FOLD, circle_crossings, plane_segments_in_parts, unfolded
 from twin.inspection.solid import Floats, Solid
-from twin.inspection.usable import steep_ends
+from twin.inspection.usable import steep_ends, undercut_corner
 
 SPUR_BELOW = 0.1
 """a found helix angle [degrees] below this is a spur gear's deviation"""
@@ -122,6 +122,8 @@ def _flank(gear: Involute, radius: Floats, half_tooth: Floats) -> np.ndarray:
     step = roll[1] - roll[0]
     all_rolls = gear.roll_length(2 * radius)
     low = max(roll[first] + (CLEAR * step if first else 0.0), float(gear.roll_length(gear.form_diameter)))
+    corner = undercut_corner(roll, missed, start=low, end=roll[last])
+    low = low if corner is None else corner + CLEAR * step
     high = roll[last] - CLEAR * step
     return outside & (all_rolls >= low) & (all_rolls <= high)
 
@@ -136,7 +138,7 @@ def _thickness(solid: Solid, outline: Outline) -> tuple[Floats, Floats]:
     heights = outline.middle + reach * np.linspace(-1, 1, 9)
     rows = []
     for part in plane_segments_in_parts(solid, heights):
-        crossings = circle_crossings(part, radii)
+        crossings = unfolded(circle_crossings(part, radii), FOLD * 2 * math.pi / outline.count)
         shape = (len(part.heights), len(radii))
         place = crossings.plane * len(radii) + crossings.circle
         left, right = phase_sums(crossings, outline.count, place, math.prod(shape))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.inspection.involute import Involute
-from twin.inspection.sections import Crossings, Segments, circle_crossings, plane_segments
+from twin.inspection.sections import FOLD, Crossings, Segments, circle_crossings, plane_segments, unfolded
 from twin.inspection.solid import Floats, Ints, Solid
 
 SENSES = (1.0, -1.0)
@@ -63,7 +63,7 @@ class Readings:
 def read_flanks(solid: Solid, placed: Placed, heights: Floats, radii: Floats) -> Readings:
     """Read all flanks on circles; heights (planes,) and radii (circles,) [mm] ascending."""
     segments = plane_segments(solid, heights, radius=float(radii[0]) if len(radii) == 1 else None)
-    crossings = circle_crossings(segments, radii)
+    crossings = unfolded(circle_crossings(segments, radii), FOLD * 2 * math.pi / placed.gear.teeth)
     height, radius = heights[crossings.plane], radii[crossings.circle]
     side = np.where(crossings.left, *SENSES)
     angle = placed.turned_back(crossings.angle, height)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.inspection.sections import (
+    FOLD,
     Crossings,
     Segments,
     circle_crossings,
@@ -21,6 +22,7 @@ from twin.inspection.sections import (
     plane_segments_in_parts,
     radial_limits,
     turns_about_axis,
+    unfolded,
 )
 from twin.inspection.solid import Floats, Ints, Solid
 
@@ -36,7 +38,7 @@ FEWEST = 5
 MOST_SIDES = 24
 """with more corners than this an outline is round, not a polygon"""
 NICK = 0.05
-"""crossings closer together than this part of a pitch belong to one flank: a nick where two cuts meet"""
+"""crossings closer together than this part of a pitch belong to one tooth when teeth are counted"""
 ROUND = 1e-3
 """an outline of less relative depth is round: the chords of a faceted circle"""
 
@@ -166,34 +168,18 @@ def _survey(solid: Solid, heights: Floats) -> tuple[Floats, Floats, Ints]:
 def _counts(sections: Segments, middles: Floats) -> Ints:
     """Count regular teeth in every plane on its own circle; 0 where steps are uneven or the axis outside."""
     crossings = circle_crossings(sections.scaled(1 / middles), np.ones(1))
+    flanks = np.maximum(np.bincount(crossings.plane, minlength=len(middles)), 2)
+    crossings = unfolded(crossings, NICK * 4 * math.pi / flanks[crossings.plane])
     around = turns_about_axis(sections) > 0.5
     counts = np.zeros(len(middles), dtype=np.int64)
     for plane in np.flatnonzero(around):
-        here = crossings.plane == plane  # sorted by angle
-        rising = _without_nicks(crossings.angle[here], ~crossings.left[here])
+        rising = crossings.angle[(crossings.plane == plane) & ~crossings.left]  # sorted
         if len(rising) >= 2:
             pitch = 2 * math.pi / len(rising)
             steps = np.diff(rising, append=rising[0] + 2 * math.pi)
             if np.abs(steps - pitch).max() < 0.25 * pitch:
                 counts[plane] = len(rising)
     return counts
-
-
-def _without_nicks(angle: Floats, right: np.ndarray) -> Floats:
-    """Return the angles of the right flanks among crossings (n,) sorted by angle, each nicked flank once."""
-    if len(angle) < 4:
-        return angle[right]
-    near = np.mod(np.diff(angle, append=angle[0]), 2 * math.pi) < NICK * 4 * math.pi / len(angle)
-    if not near.any() or near.all():
-        return angle[right]
-    begin = int(np.flatnonzero(~near)[-1]) + 1  # a group does not go on over the end
-    order = np.roll(np.arange(len(angle)), -begin)
-    group = np.cumsum(~np.roll(near[order], 1))
-    # of an odd number of crossings one is the flank's, an even number is a flaw on one side of the circle
-    first = np.searchsorted(group, group)
-    size = np.bincount(group)[group]
-    kept = order[(size % 2 == 1) & (np.arange(len(order)) == first + size // 2 - (size // 2) % 2)]
-    return np.sort(angle[kept[right[kept]]])
 
 
 def phase_sums(crossings: Crossings, count: int, place: Ints, places: int) -> tuple[Complexes, Complexes]:
@@ -254,7 +240,7 @@ def _twist(solid: Solid, count: int, low: float, high: float, radius: float) -> 
     planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 33, 2000))
     heights = _midpoints(low, high, planes)
     segments = plane_segments(solid, heights, radius=radius)
-    crossings = circle_crossings(segments, np.array([radius]))
+    crossings = unfolded(circle_crossings(segments, np.array([radius])), FOLD * 2 * math.pi / count)
     left, right = phase_sums(crossings, count, crossings.plane, planes)
     # half way from each right flank on to the left flank of the same tooth
     thickness = np.mod(np.angle(left * right.conj()), 2 * math.pi)

@@ -15,6 +15,8 @@ from twin.inspection.solid import Floats, Ints, Solid
 
 PART = 1_000_000
 """about so many segments are handled at a time"""
+FOLD = 0.005
+"""flanks crossed twice or more within this part of a pitch are folded there, where cuts meet"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,6 +154,37 @@ def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
         left=left[order],
         segment=segment[order],
         along=t[order],
+    )
+
+
+def unfolded(crossings: Crossings, within: float | Floats) -> Crossings:
+    """Take crossings that lie closer together than `within` [rad] for one: where cuts meet a mesh may fold.
+
+    Of an odd number one is left, as far out as all their material together reaches; an even number, a nick on
+    one side of the circle, goes. `within` is one angle, or (n,) one for every crossing.
+    """
+    sense = np.where(crossings.left, 1, -1)
+    together = (np.diff(crossings.plane) == 0) & (np.diff(crossings.circle) == 0)
+    near = together & (np.diff(crossings.angle) < np.broadcast_to(within, sense.shape)[1:])
+    if not near.any():
+        return crossings
+    group = np.concatenate([[0], np.cumsum(~near)])
+    net = np.bincount(group, weights=sense).astype(np.int64)[group]
+    begin = crossings.angle[np.searchsorted(group, group)]
+    reach = np.bincount(group, weights=sense * (crossings.angle - begin))[group]
+    one = np.abs(net) == 1
+    # whichever of the group first goes the way of all of them stands for it; what stays unclear stays
+    candidates = np.flatnonzero(one & (sense == net))
+    chosen = candidates[np.unique(group[candidates], return_index=True)[1]]
+    kept = np.sort(np.concatenate([chosen, np.flatnonzero(np.abs(net) > 1)]))
+    angle = np.where(one, begin + net * reach, crossings.angle)
+    return Crossings(
+        plane=crossings.plane[kept],
+        circle=crossings.circle[kept],
+        angle=angle[kept],
+        left=crossings.left[kept],
+        segment=crossings.segment[kept],
+        along=crossings.along[kept],
     )
 
 

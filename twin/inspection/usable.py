@@ -1,10 +1,13 @@
 """Where the usable flank begins and ends: above fillet or undercut, below a tip chamfer or rounding.
 
 Flanks and reliefs are nearly involutes; a chamfer or a fillet leaves the involute steeply, so the usable
-flank is the stretch about its middle along which the deviation is not steep. A slight undercut is not steep,
-but at its corner material begins to lack against what the flank above goes on to.
+flank is the stretch about its middle along which the deviation is not steep. How steep the flanks' own
+roughness makes them, feed marks and facets, is found first, and steepness then looked for over a base long
+enough to tell. A slight undercut is not steep, but at its corner material begins to lack against what the
+flank above goes on to.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +18,17 @@ from twin.inspection.solid import Floats, Ints, Solid
 POINTS = 960
 """at which the flank is looked at from root to tip"""
 BASE = 3
-"""points to both sides over which steepness is taken"""
+"""points to both sides over which steepness is taken, at least"""
+WIDEST = 0.05
+"""and at most, as part of all points"""
 STEEP = 0.06
 """deviation over roll length that is no flank's: three degrees and a half"""
 MIDDLE = 0.6
 """from root to tip, this is always flank"""
 ALIKE = 0.05
 """a tooth whose flank ends farther than this part of the flank from the usual end is a damaged tooth"""
+ROUGH = (0.45, 0.7)
+"""part of the way from root to tip over which the roughness is looked at"""
 BODY = (0.35, 0.9)
 """part of the flank, from its start to its end, that no undercut reaches"""
 LACKING = (1e-3, 5.0)
@@ -52,16 +59,58 @@ def steep_ends(roll: Floats, deviation: Floats) -> tuple[Ints, Ints]:
         deviation: (n, m) of as many flanks [mm].
 
     """
-    points = len(roll)
+    points, step = len(roll), roll[1] - roll[0]
+    deviation = np.array([_without_holes(flank) for flank in deviation])
+    band = _roughness(deviation)
+    base = int(np.clip(math.ceil(band / (STEEP * step)), BASE, max(WIDEST * points, BASE)))
+    limit = 2 * max(STEEP * base * step, band)
     middle = round(MIDDLE * (points - 1))
-    rise = deviation[:, 2 * BASE :] - deviation[:, : -2 * BASE]
-    flat = np.abs(rise) <= STEEP * 2 * BASE * (roll[1] - roll[0])  # NaN is steep
-    steep = ~np.pad(flat, ((0, 0), (BASE, BASE)), mode="edge")
+    flat = np.abs(deviation[:, 2 * base :] - deviation[:, : -2 * base]) <= limit  # NaN is steep
+    steep = ~np.pad(flat, ((0, 0), (base, base)), mode="edge")
     below, above = steep[:, :middle][:, ::-1], steep[:, middle:]
-    # steepness shows BASE points before the corner that makes it
+    # steepness shows about a base before the corner that makes it
     first = np.where(below.any(axis=1), middle - below.argmax(axis=1), 0)
-    last = np.where(above.any(axis=1), middle + above.argmax(axis=1) + BASE - 2, points - 1)
-    return first, np.minimum(last, points - 1)
+    last = np.where(above.any(axis=1), middle + above.argmax(axis=1) - 1, points - 1)
+    band = max(band, STEEP * BASE * step)
+    return tuple(
+        _as_far_as_level(deviation, end, band=band, reach=r)
+        for end, r in ((first, -2 * base), (last, 2 * base))
+    )
+
+
+def _without_holes(flank: Floats) -> Floats:
+    """Return a flank (m,) with its inner holes bridged: they are no end of it."""
+    there = np.flatnonzero(np.isfinite(flank))
+    if len(there) in (0, len(flank)):
+        return flank
+    inner = slice(there[0], there[-1] + 1)
+    bridged = flank.copy()
+    bridged[inner] = np.interp(np.arange(len(flank))[inner], there, flank[there])
+    return bridged
+
+
+def _roughness(deviation: Floats) -> float:
+    """Return the usual band [mm] of flanks (n, m) about their own bend, where every tooth has flank."""
+    low, high = (round(part * deviation.shape[1]) for part in ROUGH)
+    at = np.linspace(-1, 1, high - low)
+    body = deviation[:, low:high]
+    body = body[np.isfinite(body).all(axis=1)]
+    if len(body) == 0:
+        return 0.0
+    bend = np.linalg.qr(np.vander(at, 3))[0]
+    return float(np.median(np.ptp(body - body @ bend @ bend.T, axis=1)))
+
+
+def _as_far_as_level(deviation: Floats, end: Ints, *, band: float, reach: int) -> Ints:
+    """Move each end (n,) on by up to `reach` points while the flank keeps to the level of those before it."""
+    points, sense = deviation.shape[1], 1 if reach > 0 else -1
+    row = np.arange(len(end))[:, None]
+    before = np.clip(end[:, None] - sense * np.arange(abs(reach)), 0, points - 1)
+    level = np.median(deviation[row, before], axis=1)[:, None]
+    beyond = np.clip(end[:, None] + sense * np.arange(abs(reach) + 1), 0, points - 1)
+    left = ~(np.abs(deviation[row, beyond] - level) <= band)
+    steps = np.where(left.any(axis=1), np.maximum(left.argmax(axis=1) - 1, 0), abs(reach))
+    return np.clip(end + sense * steps, 0, points - 1)
 
 
 def undercut_corner(roll: Floats, deviation: Floats, *, start: float, end: float) -> float | None:
@@ -122,7 +171,7 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
     middle = flanks[:, round(MIDDLE * POINTS), None]
     corner = undercut_corner(roll, _median(flanks - middle), start=start, end=end)
     if corner is not None:
-        start, undercut = corner + step, True
+        start, undercut = float(corner + step), True
     return Usable(start=start, end=end, undercut=undercut, chamfered=end < tip)
 
 

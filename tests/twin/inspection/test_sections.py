@@ -1,3 +1,4 @@
+import dataclasses
 import math
 
 import manifold3d as m3
@@ -7,12 +8,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from twin.inspection.sections import (
+    Crossings,
     circle_crossings,
     outer_outlines,
     outline,
     plane_segments,
     plane_segments_in_parts,
     radial_limits,
+    unfolded,
 )
 from twin.inspection.solid import check_solid
 
@@ -103,3 +106,48 @@ def test_outer_outline_leaves_bores_and_parts_agree():
     parts = list(plane_segments_in_parts(solid, heights))
     np.testing.assert_array_equal(np.concatenate([p.heights for p in parts]), heights)
     np.testing.assert_array_equal(np.concatenate([p.start for p in parts]), segments.start)
+
+
+def crossed(*at):
+    """Crossings of one circle: (angle, left?)."""
+    n = len(at)
+    return Crossings(
+        plane=np.zeros(n, dtype=np.int64),
+        circle=np.zeros(n, dtype=np.int64),
+        angle=np.array([a for a, _ in at], dtype=np.float64),
+        left=np.array([left for _, left in at], dtype=bool),
+        segment=np.arange(n),
+        along=np.zeros(n),
+    )
+
+
+LEFT, RIGHT = True, False
+
+
+@pytest.mark.parametrize(
+    ("at", "wanted"),
+    [
+        # a fold: material to 0.10, none to 0.11, material to 0.13
+        ([(-1, RIGHT), (0.10, LEFT), (0.11, RIGHT), (0.13, LEFT), (2, RIGHT)], [(0, -1), (1, 0.12), (4, 2)]),
+        # the same on a right flank, and crossings that coincide in any order
+        ([(0.10, RIGHT), (0.11, LEFT), (0.13, RIGHT), (1, LEFT)], [(0, 0.12), (3, 1)]),
+        ([(0.1, LEFT), (0.1, LEFT), (0.1, RIGHT), (1, RIGHT)], [(0, 0.1), (3, 1)]),
+        ([(0.1, RIGHT), (0.1, LEFT), (0.1, LEFT), (1, RIGHT)], [(1, 0.1), (3, 1)]),
+        # a nick goes, what makes no sense stays
+        ([(0.1, RIGHT), (0.11, LEFT), (1, LEFT)], [(2, 1)]),
+        ([(0.1, LEFT), (0.11, LEFT), (1, LEFT)], [(0, 0.1), (1, 0.11), (2, 1)]),
+        ([(0.1, LEFT), (0.5, RIGHT), (0.9, LEFT)], [(0, 0.1), (1, 0.5), (2, 0.9)]),
+    ],
+)
+def test_folds_are_crossed_once(at, wanted):
+    found = unfolded(crossed(*at), 0.05)
+    assert found.segment.tolist() == [row for row, _ in wanted]
+    assert found.angle == pytest.approx([a for _, a in wanted], abs=1e-12)
+    assert found.left.tolist() == [at[row][1] for row, _ in wanted]
+
+
+def test_folds_of_different_circles_are_not_mixed():
+    one = crossed((0.1, LEFT), (0.11, RIGHT))
+    for apart in ("plane", "circle"):
+        two = dataclasses.replace(one, **{apart: np.array([0, 1])})
+        assert unfolded(two, 0.05).angle.tolist() == [0.1, 0.11]
