@@ -72,9 +72,9 @@ def steep_ends(roll: Floats, deviation: Floats) -> tuple[Ints, Ints]:
     first = np.where(below.any(axis=1), middle - below.argmax(axis=1), 0)
     last = np.where(above.any(axis=1), middle + above.argmax(axis=1) - 1, points - 1)
     band = max(band, STEEP * BASE * step)
-    return tuple(
-        _as_far_as_level(deviation, end, band=band, reach=r)
-        for end, r in ((first, -2 * base), (last, 2 * base))
+    return (
+        _as_far_as_level(deviation, first, band=band, reach=-2 * base),
+        _as_far_as_level(deviation, last, band=band, reach=2 * base),
     )
 
 
