@@ -15,6 +15,8 @@ PLAIN_ADDRESSES = frozenset("FSTPQRLIJKA")
 """addresses that exist on any machine beside G and M"""
 MACRO_CALLS = frozenset((650, 660))
 """G65, G66: all other words of their block are arguments"""
+_CYCLES = frozenset((710, 720, 730, 760))
+"""G71, G72, G73, G76, which other controls write in one block, with D"""
 _NO_ARGUMENTS = frozenset("GNO/")
 
 
@@ -116,6 +118,8 @@ def build_block(words: Sequence[Word], span: Span, letters: frozenset[str]) -> B
             others[address] = word
         else:
             valid = ", ".join(sorted(letters)) + " for the axes of this machine, " + ", ".join("FSTGMPQRLIJK")
+            if address == "D" and not _CYCLES.isdisjoint(codes):
+                valid = f"the two-block form: G71 U R, then G71 P Q U W; likewise {g_name(max(codes))}"
             raise alarm("PS0009", str(word), place(word), valid=valid)
     line = span.line or 1
     return Block(

@@ -346,3 +346,11 @@ def test_cycles_in_mdi(counting_motion) -> None:
     step = interpreter.next(motion)
     assert step is not None
     assert step.index == 0
+
+
+@pytest.mark.parametrize("block", ["G71 P1 Q2 U0.4 W0.1 D4000", "G76 X27. Z-20. K1.5 D0.5 F2."])
+def test_the_form_of_one_block_is_answered_with_that_of_two(read, block: str) -> None:
+    """D belongs to the tape format of other controls: the message says how it is written here."""
+    alarm = read(f"{block}\nM30").alarm
+    assert alarm.number == "PS0009"
+    assert alarm.valid.startswith("the two-block form: G71 U R, then G71 P Q U W")
