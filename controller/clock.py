@@ -36,6 +36,26 @@ class Follow:
     """[deg]"""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Geared:
+    """Rows of a chunk in which one gear box was engaged, for whoever watches how well it keeps."""
+
+    first: int
+    """row"""
+    last: int
+    """row behind the last one"""
+    slave: int
+    """column"""
+    master: int
+    """column"""
+    numerator: int
+    denominator: int
+    follow: bool
+    """on the measured master"""
+    slides: tuple[tuple[int, float], ...] = ()
+    """columns of slides that turn the slave, too, and by how much [deg/mm]: a helical gear box"""
+
+
 class WatchKind(Enum):
     """What ends a chunk before its last tick."""
 
@@ -67,6 +87,7 @@ class Chunk:
     tool: NDArray[np.int16]
     """(n,) number of the tool in use, 0 = the one that is mounted without a T word"""
     couplings: tuple[Follow, ...] = ()
+    gears: tuple[Geared, ...] = ()
     watch: Watch | None = None
 
     @property

@@ -23,7 +23,7 @@ from controller.motion.encoders import Encoders
 from controller.motion.feeding import FEED_PERIOD
 from controller.motion.follow_type import follow_in
 from controller.motion.requests import Attendance, Reading, SkipWatch
-from controller.motion.sampling import engaged, marked, setpoints
+from controller.motion.sampling import engaged, geared, marked, setpoints
 from controller.operator.actions import OperatorEvent, check_events
 from controller.tables.alarms import ALARMS, Alarm, ControllerError
 from controller.tables.parameters import Parameters
@@ -142,6 +142,7 @@ class Controller:
             sync=engaged(timeline, time),
             tool=marked(timeline.tools, time).astype(np.int16),
             couplings=(follow,) if follow else (),
+            gears=geared(timeline, time),
             watch=watch,
         )
 

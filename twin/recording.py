@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.output.arrays import save_arrays
+from twin.sync.spectrum import Spectrum
 
 Floats = NDArray[np.float64]
 
@@ -45,6 +46,10 @@ class Recording:
     """(n,) tool number, 0 = the mounted one"""
     sync: NDArray[np.bool_]
     """(n,) electronic gear box engaged"""
+    sync_error_arcsec: Floats
+    """(n,) of the gear box's slave, + = ahead in its positive sense; NaN out of sync"""
+    sync_spectrum: Spectrum | None
+    """None where the work never made a whole turn in sync at constant speed"""
     work_angle_deg: Floats
     """(n,) of the work spindle, unwrapped, + counter-clockwise seen from +Z"""
     tool_angle_deg: Floats
@@ -57,7 +62,10 @@ class Recording:
     """(n, 3) unit vector in the turning part frame, direction of tool angle 0"""
 
     def save(self, path: Path) -> None:
-        """Write `recording.npz`: per axis letter `setpoint_X`, `actual_X`, …; the rest under its own name."""
+        """Write `recording.npz`: per axis letter `setpoint_X`, `actual_X`, …; the rest under its own name.
+
+        `sync_order`, `sync_amplitude_arcsec`: lines of the error's spectrum, orders per turn of the work.
+        """
         columns: dict[str, NDArray] = {}
         for k, letter in enumerate(self.axes):
             columns[f"setpoint_{letter}"] = self.setpoint[:, k]
@@ -71,6 +79,11 @@ class Recording:
             ),
             "tool": self.tool,
             "sync": self.sync,
+            "sync_error_arcsec": self.sync_error_arcsec,
+            "sync_order": self.sync_spectrum.order if self.sync_spectrum else np.zeros(0),
+            "sync_amplitude_arcsec": self.sync_spectrum.amplitude_arcsec
+            if self.sync_spectrum
+            else np.zeros(0),
             "work_angle_deg": self.work_angle_deg,
             "tool_angle_deg": self.tool_angle_deg,
             "tool_centre_mm": self.tool_centre_mm,

@@ -35,7 +35,7 @@ from twin.progress import Reporter, Silent
 from twin.regression.judge import misses
 from twin.report.page import write_report
 from twin.session import CHUNK, record
-from twin.setup import make_ready
+from twin.setup import make_ready, require_analogue
 from twin.summary import report_data
 
 BYTES_PER_SAMPLE = 160
@@ -68,6 +68,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         cutters = cutters_of(job)
         settings = settings_of(job, cutters, events=options.events)
         ready = make_ready(job, cutters)
+        require_analogue(ready, settings.parameters)
         program = load_program(job.program)
         foreseen, advice = advised_run(job, cutters, settings, program)
         cycle = foreseen.cycle_time_s

@@ -16,6 +16,7 @@ from twin.errors import PartError
 from twin.kinematics import cutter_motion, part_frame
 from twin.recording import BlockRef, Recording
 from twin.setup import MountedTool, Ready
+from twin.sync import spectrum, sync_error
 
 Floats = NDArray[np.float64]
 
@@ -49,6 +50,7 @@ class _Tape:
     actual: Floats
     block: NDArray[np.int32]
     sync: NDArray[np.bool_]
+    sync_error: Floats
     tool: NDArray[np.int16]
 
     @staticmethod
@@ -61,6 +63,7 @@ class _Tape:
             actual=feedback.actual,
             block=chunk.block[:n],
             sync=chunk.sync[:n],
+            sync_error=sync_error(chunk, feedback),
             tool=chunk.tool[:n],
         )
 
@@ -74,6 +77,7 @@ class _Tape:
             actual=empty,
             block=np.zeros(0, dtype=np.int32),
             sync=np.zeros(0, dtype=bool),
+            sync_error=empty[:, 0],
             tool=np.zeros(0, dtype=np.int16),
         )
         names = [f.name for f in fields(_Tape)]
@@ -142,6 +146,13 @@ def _recording(
         blocks=tuple(BlockRef(file=b.file, line=b.line, text=b.text) for b in controller.blocks),
         tool=tape.tool,
         sync=tape.sync,
+        sync_error_arcsec=tape.sync_error,
+        sync_spectrum=spectrum(
+            tape.time,
+            tape.sync_error,
+            tape.setpoint[:, ready.work_column],
+            tape.setpoint[:, ready.tool_column],
+        ),
         work_angle_deg=tape.actual[:, ready.work_column],
         tool_angle_deg=tape.actual[:, ready.tool_column],
         tool_centre_mm=centre,

@@ -3,8 +3,11 @@
 import math
 from dataclasses import dataclass, replace
 
+from controller.tables.machine_data import machine_data
+from controller.tables.parameters import Parameters
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
+from twin.errors import InputError
 from twin.faults.clamping import clamping
 from twin.inspection.nominal import GearNominal
 from twin.job.schema import Job, Tool
@@ -12,6 +15,7 @@ from twin.kinematics import Kinematics, read_kinematics
 from twin.machine import (
     Assembly,
     Changes,
+    DriveKind,
     MachineSpec,
     MachineZero,
     Setup,
@@ -86,6 +90,20 @@ def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
         work_column=tools[0].kinematics.work.spindle.column,
         tool_column=tools[0].kinematics.tool.spindle.column,
     )
+
+
+def require_analogue(ready: Ready, parameters: Parameters) -> None:
+    """Raise InputError where the controller takes for a servo axis what is an induction motor."""
+    letters = machine_data(parameters).letters
+    for joint, letter in zip(ready.spec.setups[ready.setup], letters, strict=True):
+        induction = ready.spec.drives[joint].kind is DriveKind.VARIABLE_FREQUENCY
+        if induction and not parameters.bit(9005, 0, letter):
+            raise InputError(
+                f"drives.{joint} is an induction motor without position control, and the controller takes "
+                f"{letter} for a servo axis",
+                place=ready.spec.place_of(("drives", joint, "kind")),
+                remedy=f'parameters = {{ "9005#0.{letter}" = 1 }}, and for a gear box on it "201#7" = 1',
+            )
 
 
 def _root_diameter(job: Job) -> float:

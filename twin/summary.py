@@ -16,6 +16,7 @@ from twin.outcome import Outcome
 from twin.regression.judge import table
 from twin.report.data import Message, Part, Program, ReportData, Row, Severity
 from twin.report.words import headline
+from twin.sync import Spectrum
 
 Floats = NDArray[np.float64]
 
@@ -171,6 +172,8 @@ def _job_rows(outcome: Outcome) -> list[Row]:
     if outcome.session.skipped_s:
         skipped = f"{outcome.session.skipped_s:.1f} s at standstill are left out of the recording"
         rows.append(Row(label="Dwell", value=skipped))
+    if found := outcome.session.recording.sync_spectrum:
+        rows.append(Row(label="Gear box", value=sync_words(found)))
     rows.append(
         Row(
             label="Cut",
@@ -206,6 +209,18 @@ def _changed(table: Mapping[str, Any], prefix: str = "") -> str:
         for key, value in table.items()
     ]
     return ", ".join(one for one in said if one)
+
+
+def sync_words(found: Spectrum) -> str:
+    """The synchronisation error in one line."""
+    text = (
+        f"error at {abs(found.work_rpm):.4g} rpm of the work: mean {_signed(found.mean_arcsec, 2)}″, "
+        f"rms {found.rms_arcsec:.2g}″ about it"
+    )
+    if lines := found.strongest(1):
+        ((order, per_tool, amplitude),) = lines
+        text += f"; strongest line {amplitude:.2g}″, {order:.4g} a turn of the work, {per_tool:.4g} of the tool"
+    return text
 
 
 def chip_words(chips: Chips) -> str:

@@ -9,6 +9,7 @@ import bisect
 import numpy as np
 from numpy.typing import NDArray
 
+from controller.clock import Geared
 from controller.laws.gearbox import slave_travel
 from controller.laws.segments import Round, Straight, Track
 from controller.motion.timeline import Epoch, Marks, Timeline
@@ -36,6 +37,28 @@ def engaged(timeline: Timeline, time: Floats) -> NDArray[np.bool_]:
     for epoch in timeline.epochs:
         found |= (time > epoch.start) & (time <= epoch.end)
     return found
+
+
+def geared(timeline: Timeline, time: Floats) -> tuple[Geared, ...]:
+    """Which gear boxes were engaged in which of the ascending times (n,)."""
+    found = []
+    for epoch in timeline.epochs:
+        first, last = np.searchsorted(time, (epoch.start, epoch.end), side="right").tolist()
+        if first < last:
+            gear = epoch.gear
+            found.append(
+                Geared(
+                    first=first,
+                    last=last,
+                    slave=gear.slave,
+                    master=gear.master,
+                    numerator=gear.numerator,
+                    denominator=gear.denominator,
+                    follow=gear.follow,
+                    slides=tuple(epoch.weights.items()),
+                )
+            )
+    return tuple(found)
 
 
 def marked(marks: Marks, time: Floats) -> NDArray[np.int64]:

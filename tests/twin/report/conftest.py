@@ -245,6 +245,8 @@ def recording(samples=150_000):
         blocks=tuple(BlockRef(file="program.nc", line=n, text=texts[n - 1]) for n in lines),
         tool=np.zeros(samples, np.int16),
         sync=engaged,
+        sync_error_arcsec=np.where(engaged, -3600.0 * (0.001 - 0.02 / 20) * ramp, np.nan),
+        sync_spectrum=None,
         work_angle_deg=work,
         tool_angle_deg=hob,
         tool_centre_mm=np.zeros((samples, 3)),
