@@ -13,6 +13,7 @@ from twin.cutters.hob import Hob
 from twin.cutting.chips import Chips
 from twin.inspection.result import GearResult, Inspection, PolygonResult
 from twin.outcome import Outcome
+from twin.recording import Recording
 from twin.regression.judge import table
 from twin.report.data import Message, Part, Program, ReportData, Row, Severity
 from twin.report.words import headline
@@ -31,6 +32,7 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
         timing=tuple(Row(label=name, value=f"{t:.2f} s") for name, t in outcome.times.items()),
         recording=outcome.session.recording,
         rotary_axes=_rotary(outcome),
+        sync_error_arcsec=_sync_error(outcome.session.recording),
         messages=messages(outcome),
         part=Part(vertices=remains.vertices, faces=remains.faces, deviation_um=deviation_um),
         inspection=outcome.inspection,
@@ -219,7 +221,9 @@ def sync_words(found: Spectrum) -> str:
     )
     if lines := found.strongest(1):
         ((order, per_tool, amplitude),) = lines
-        text += f"; strongest line {amplitude:.2g}″, {order:.4g} a turn of the work, {per_tool:.4g} of the tool"
+        text += (
+            f"; strongest line {amplitude:.2g}″, {order:.4g} a turn of the work, {per_tool:.4g} of the tool"
+        )
     return text
 
 
@@ -242,6 +246,11 @@ def _provenance_rows(origin: dict[str, object]) -> list[Row]:
                 shown = f"{value['file']}  {value['sha256']}" if section == "inputs" else str(value)
                 rows.append(Row(label=f"{section}: {name}", value=shown))
     return rows
+
+
+def _sync_error(recording: Recording) -> Floats | None:
+    """(n,) for the plots; None where the gear box was never on."""
+    return recording.sync_error_arcsec if recording.sync.any() else None
 
 
 def _rotary(outcome: Outcome) -> frozenset[str]:

@@ -30,6 +30,8 @@ class Spectrum:
     """(n,) periods per turn of the work, ascending"""
     amplitude_arcsec: Floats
     """(n,)"""
+    turn_arcsec: Floats
+    """(m,) error over the last turn of the work, evenly"""
 
     @property
     def tool_turns(self) -> float:
@@ -37,9 +39,10 @@ class Spectrum:
         return abs(self.tool_rpm / self.work_rpm)
 
     def strongest(self, count: int) -> list[tuple[float, float, float]]:
-        """The largest lines: order per turn of the work, per turn of the tool, amplitude [arcsec]."""
+        """The largest lines, down to a hundredth of the first: order per turn of the work, per turn of the
+        tool, amplitude [arcsec]."""
         a = self.amplitude_arcsec
-        inner = (a >= np.r_[0.0, a[:-1]]) & (a > np.r_[a[1:], 0.0]) & (a > 0.0)
+        inner = (a >= np.r_[0.0, a[:-1]]) & (a > np.r_[a[1:], 0.0]) & (a > 0.01 * a.max(initial=0.0))
         peaks = np.flatnonzero(inner)
         peaks = peaks[np.argsort(-a[peaks])][:count]
         return [(float(self.order[k]), float(self.order[k]) / self.tool_turns, float(a[k])) for k in peaks]
@@ -58,10 +61,10 @@ def spectrum(time_s: Floats, error_arcsec: Floats, work_deg: Floats, tool_deg: F
     if turns < 1:
         return None
     time, error = time_s[first:last], error_arcsec[first:last]
-    angle = np.abs(work_deg[first:last] - work_deg[last - 1]) / 360.0  # counts down to zero
-    samples = int(np.count_nonzero(angle < turns))
-    even = turns * np.arange(samples) / samples
-    value = np.interp(even, angle[::-1], error[::-1])
+    turned = np.abs(work_deg[first:last] - work_deg[first]) / 360.0
+    begin = turned[-1] - turns
+    samples = int(np.count_nonzero(turned > begin))
+    value = np.interp(begin + turns * np.arange(samples) / samples, turned, error)
     amplitude = 2.0 * np.abs(np.fft.rfft(value)) / samples
     seconds = time[-1] - time[0]
     return Spectrum(
@@ -74,6 +77,7 @@ def spectrum(time_s: Floats, error_arcsec: Floats, work_deg: Floats, tool_deg: F
         peak_to_peak_arcsec=float(np.ptp(value)),
         order=np.arange(1, len(amplitude)) / turns,
         amplitude_arcsec=amplitude[1:],
+        turn_arcsec=value[-(samples // turns) :],
     )
 
 
@@ -92,7 +96,8 @@ def _steady(time_s: Floats, error: Floats, work_deg: Floats) -> tuple[int, int] 
     good = np.isfinite(error) & (change <= STEADY * np.abs(speed)) & (speed != 0.0)
     good[1:] &= step < 1.5 * tick
     edge = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
-    starts, ends = edge[::2] + round(SETTLING_S / tick), edge[1::2]
+    # a change of speed shows in the last of them before it passes the limit
+    starts, ends = edge[::2] + round(SETTLING_S / tick), edge[1::2] - 2 * wide
     if not len(starts) or (ends - starts).max() < 3:
         return None
     longest = int(np.argmax(ends - starts))

@@ -17,6 +17,7 @@ from twin.report.sections.pitch import pitch_section
 from twin.report.sections.polygon import polygon_section
 from twin.report.sections.process import process_section
 from twin.report.sections.section import Section, Tab
+from twin.report.sections.sync import sync_section
 from twin.report.sections.verdict import verdict_section
 
 Builder = Callable[[ReportData], Section | None]
@@ -30,6 +31,7 @@ SECTIONS: tuple[Builder, ...] = (
     pitch_section,
     polygon_section,
     process_section,
+    sync_section,
     origin_section,
 )
 """in the order in which they stand within their tabs; they are built beside one another"""
