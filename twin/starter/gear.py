@@ -7,7 +7,7 @@ from twin.advice.gear_law import feed_mark, reference_diameter
 from twin.cutters.hob import Hob
 from twin.errors import InputError
 from twin.inspection.nominal import GearNominal
-from twin.inspection.tolerances import GearSize, gear_tolerance
+from twin.inspection.tolerances import GearSize, gear_tolerance, outside_standard
 from twin.starter.approach import clearance
 from twin.starter.plan import Draft, highest_speeds, program_text, spindle_speed, toml_number, up, word
 
@@ -222,6 +222,6 @@ def _expect(nominal: GearNominal, size: GearSize) -> str:
 number_of_teeth = {nominal.number_of_teeth}
 hand = "{hand}"
 helix_angle_deg = {{value = {toml_number(helix)}, tolerance = {toml_number(round(angle, 4))}}}
-verdict = "in"
+verdict = "{"not_graded" if outside_standard(size) else "in"}"
 alarms = []
 """

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from twin.advice.polygon_law import Face, face
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import InputError
+from twin.inspection.nominal import TOLERANCE
+from twin.inspection.tolerances import across_flats_limits
 from twin.starter.plan import Draft, highest_speeds, program_text, toml_number, up, word
 
 BESIDE = 2.0
@@ -108,9 +110,10 @@ def _faces(order: PolygonOrder, ratio: int) -> Face:
 
 
 def _expect(order: PolygonOrder, faces: Face) -> str:
-    """Theory's own figures; concave faces may be out of tolerance, which the order did not ask about."""
+    """Theory's own figures; in tolerance where the bow leaves the width across flats in it everywhere."""
     bow = 1000.0 * faces.bow
-    verdict = "" if faces.concave else 'verdict = "in"\n'
+    low, high = across_flats_limits(order.across_flats, TOLERANCE)
+    verdict = "" if faces.concave or 2.0 * faces.bow > high - low else 'verdict = "in"\n'
     return f"""
 [expect]   # theory: faces {"concave" if faces.concave else "convex"} by {abs(bow):.2f} µm
 number_of_sides = {order.sides}
