@@ -103,6 +103,10 @@ class Kinematics:
     """to the work frame: Z = the spindle's axis, origin in the front face of a part clamped without fault"""
     mount: RigidTransform = field(default_factory=RigidTransform)
     """part frame -> work frame: how the part is clamped"""
+    arbor: RigidTransform = field(default_factory=RigidTransform)
+    """hob's own frame -> tool frame: how the hob sits on its spindle"""
+    creep: Floats | None = None
+    """(axes,) how fast slides move that their encoders do not see [mm/s]"""
 
 
 def rotation_about(axis: Floats, angle: Floats) -> Floats:
@@ -197,16 +201,28 @@ def cutter_motion(kinematics: Kinematics, time_s: Floats, actual: Floats) -> Cut
         raise ValueError(f"actual: expected ({len(time_s)}, {kinematics.axes}), got {actual.shape}")
     still = np.zeros((1, kinematics.axes))
     (origin,), (work,) = kinematics.work.pose(still)
-    centre, _ = kinematics.tool.pose(actual)
+    axes = actual if kinematics.creep is None else actual + time_s[:, None] * kinematics.creep
+    centre, _ = kinematics.tool.pose(axes)
     _, (tool,) = kinematics.tool.pose(still)
+    tool_angle = np.radians(actual[:, kinematics.tool.spindle.column])
+    basis = tool.T @ work
+    arbor = kinematics.arbor
     return CutterMotion(
         time_s=time_s,
         work_angle=np.radians(actual[:, kinematics.work.spindle.column]),
-        tool_angle=np.radians(actual[:, kinematics.tool.spindle.column]),
-        centre=(centre - origin) @ work,
-        basis=tool.T @ work,
+        tool_angle=tool_angle,
+        centre=(centre - origin) @ work + _spun(tool_angle, arbor.translation) @ basis,
+        basis=basis,
+        lean=_spun(tool_angle, arbor.rotation[:, 2])[:, :2] if arbor.rotation[2, 2] != 1.0 else None,
         mount=kinematics.mount,
     )
+
+
+def _spun(angle: Floats, vector: Floats) -> Floats:
+    """(n, 3) a vector of the tool in its carrier's frame, the spindle turned by `angle` (n,) [rad]."""
+    x, y, z = vector
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.column_stack([x * cos - y * sin, x * sin + y * cos, np.full(len(angle), z)])
 
 
 def part_frame(motion: CutterMotion) -> tuple[Floats, Floats, Floats]:
@@ -215,4 +231,17 @@ def part_frame(motion: CutterMotion) -> tuple[Floats, Floats, Floats]:
     mount = motion.mount
     to_part = mount.rotation.T @ back
     centre = np.einsum("nij,nj->ni", back, motion.centre) - mount.translation
-    return centre @ mount.rotation, to_part @ motion.basis[2], to_part @ motion.basis[0]
+    zero, axis = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    if motion.lean is not None:
+        zero, axis = _leaning(motion.lean, zero), _leaning(motion.lean, axis)
+    to_part = to_part @ motion.basis.T
+    return centre @ mount.rotation, (to_part @ axis[..., None])[..., 0], (to_part @ zero[..., None])[..., 0]
+
+
+def _leaning(lean: Floats, vector: Floats) -> Floats:
+    """(n, 3) a vector turned the shortest way that brings e_z to (lean, ·), `lean` (n, 2)."""
+    high = np.sqrt(1.0 - (lean**2).sum(axis=1))
+    # Rodrigues' formula about e_z × axis
+    across = np.column_stack([-lean[:, 1], lean[:, 0], np.zeros(len(lean))])
+    along = (across @ vector) / (1.0 + high)
+    return high[:, None] * vector + np.cross(across, vector) + along[:, None] * across

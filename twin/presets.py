@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from controller.language.offsets import Offsets
 from controller.operator.actions import OperatorEvent, check_events, operator_event
@@ -12,9 +12,13 @@ from controller.tables.machine_data import machine_data
 from controller.tables.parameters import Parameters, delivered
 from controller.tables.signals import check_signals
 from twin.cutters.cutter import Cutter
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import InputError, Place
+from twin.faults.encoder_table import encoder_errors
+from twin.faults.encoders import CyclicError
+from twin.faults.hob_errors import hob_errors
 from twin.inspection.nominal import GearNominal
 from twin.job.locate import line_of
 from twin.job.schema import Job, Tool
@@ -29,6 +33,8 @@ class ControllerSettings:
     signals: Mapping[str, bool]
     events: tuple[OperatorEvent, ...] = ()
     """what the operator does"""
+    encoders: Mapping[int, CyclicError] = field(default_factory=dict)
+    """errors of rotary encoders, by column of the axis"""
 
 
 def settings_of(
@@ -57,6 +63,7 @@ def settings_of(
         offsets=offsets,
         signals=given,
         events=(*events_of(job, machine.letters), *events),
+        encoders=encoder_errors(job, machine),
     )
 
 
@@ -109,7 +116,7 @@ def _cutter(job: Job, tool: Tool) -> Cutter:
     if isinstance(tool, PolygonHead):
         return tool.cutter()
     if tool.swivel_deg is not None:
-        return tool.cutter(math.radians(tool.swivel_deg))
+        return _swivelled(job, tool, math.radians(tool.swivel_deg))
     if not isinstance(job.nominal, GearNominal):
         name = "hob" if isinstance(tool, Hob) else "wheel"
         raise InputError(
@@ -119,4 +126,8 @@ def _cutter(job: Job, tool: Tool) -> Cutter:
         )
     # swivel = helix angle − lead angle, both with the sign of their hand (geometry.md, sections 2 and 4)
     lead = tool.lead_angle if isinstance(tool, Hob) else 0.0
-    return tool.cutter(math.radians(job.nominal.helix_angle_deg) - lead)
+    return _swivelled(job, tool, math.radians(job.nominal.helix_angle_deg) - lead)
+
+
+def _swivelled(job: Job, tool: Hob | DiscWheel, swivel: float) -> Cutter:
+    return tool.cutter(swivel, hob_errors(job.faults)) if isinstance(tool, Hob) else tool.cutter(swivel)

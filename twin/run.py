@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.cnc import Controller
 from controller.language.source import load_program
 from controller.tables.alarms import as_json
 from twin.advice.advice import advice_as_json
@@ -24,7 +23,6 @@ from twin.inspection.deviation import deviation_map
 from twin.inspection.inspection import inspect
 from twin.inspection.sheet import to_json
 from twin.job.schema import Job
-from twin.machine import IdealMachine, MujocoMachine
 from twin.outcome import Options, Outcome
 from twin.output.arrays import save_arrays
 from twin.output.folder import require_replaceable, result_folder
@@ -34,7 +32,7 @@ from twin.presets import cutters_of, settings_of
 from twin.progress import Reporter, Silent
 from twin.regression.judge import misses
 from twin.report.page import write_report
-from twin.session import CHUNK, record
+from twin.session import CHUNK, run_program
 from twin.setup import make_ready, require_analogue
 from twin.summary import report_data
 
@@ -82,19 +80,12 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         f"running {cycle:.0f} s of machine time (recording up to {samples * BYTES_PER_SAMPLE / 1e6:.0f} MB)"
     )
     with watch.measure("machine"):
-        controller = Controller(
+        session = run_program(
             program,
-            parameters=settings.parameters,
-            offsets=settings.offsets,
-            tick_s=period,
-            signals=settings.signals,
-            events=settings.events,
-        )
-        machine = (
-            IdealMachine(len(controller.axes)) if options.ideal else MujocoMachine(ready.tools[0].assembly)
-        )
-        session = record(
-            controller, machine, ready, progress=lambda seconds: tell.share(seconds / max(cycle, period))
+            settings,
+            ready,
+            ideal=options.ideal,
+            progress=lambda seconds: tell.share(seconds / max(cycle, period)),
         )
     tell.stage("cutting")
     with watch.measure("cutting"):

@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 
 from controller.clock import Chunk, Feedback, Machine
 from controller.cnc import Controller
+from controller.language.source import Program
 from controller.tables.alarms import Alarm
 from twin.cutters.cutter import Cutter
 from twin.cutting.motion import CutterMotion
 from twin.errors import PartError
+from twin.faults.drives import misread
 from twin.kinematics import cutter_motion, part_frame
+from twin.machine import IdealMachine, MujocoMachine
+from twin.presets import ControllerSettings
 from twin.recording import BlockRef, Recording
 from twin.setup import MountedTool, Ready
 from twin.sync import spectrum, sync_error
@@ -82,6 +86,30 @@ class _Tape:
         )
         names = [f.name for f in fields(_Tape)]
         return _Tape(**{name: np.concatenate([getattr(t, name) for t in (none, *tapes)]) for name in names})
+
+
+def run_program(
+    program: Program,
+    settings: ControllerSettings,
+    ready: Ready,
+    *,
+    ideal: bool,
+    progress: Callable[[float], None] = lambda _seconds: None,
+) -> Session:
+    """Run a program on the machine as made ready, or on one whose axes follow their setpoints exactly."""
+    controller = Controller(
+        program,
+        parameters=settings.parameters,
+        offsets=settings.offsets,
+        tick_s=ready.spec.control_period_s,
+        signals=settings.signals,
+        events=settings.events,
+    )
+    if ideal:
+        machine: Machine = IdealMachine(len(controller.axes), settings.encoders)
+    else:
+        machine = MujocoMachine(misread(ready.tools[0].assembly, settings.encoders))
+    return record(controller, machine, ready, progress=progress)
 
 
 def record(

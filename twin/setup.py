@@ -7,8 +7,10 @@ from controller.tables.machine_data import machine_data
 from controller.tables.parameters import Parameters
 from twin.cutters.cutter import Cutter
 from twin.cutters.hob import Hob
+from twin.cutting.motion import RigidTransform
 from twin.errors import InputError
-from twin.faults.clamping import clamping
+from twin.faults.chain import faulty
+from twin.faults.mounts import arbor, clamping
 from twin.inspection.nominal import GearNominal
 from twin.job.schema import Job, Tool
 from twin.kinematics import Kinematics, read_kinematics
@@ -80,7 +82,11 @@ def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
         )
         assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
         kinematics = replace(
-            read_kinematics(assembly.model, assembly.joints), mount=clamping(job.faults, job.work.length_mm)
+            faulty(
+                read_kinematics(assembly.model, assembly.joints), job.faults, work_z=-job.work.length_mm / 2
+            ),
+            mount=clamping(job.faults, job.work.length_mm),
+            arbor=arbor(job.faults, cutter) if isinstance(job.tools[number], Hob) else RigidTransform(),
         )
         tools.append(MountedTool(number=number, cutter=cutter, assembly=assembly, kinematics=kinematics))
     return Ready(

@@ -14,6 +14,16 @@ from twin.errors import InputError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class HobErrors:
+    """What is wrong with a hob itself (DIN 3968)."""
+
+    gash_rad: tuple[float, ...] = ()
+    """how far each rake face stands ahead of its place, the thread where it was"""
+    lead_mm: float = 0.0
+    """how much longer the lead of its thread is, counted from the hob's middle"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Hob:
     """A hob by its catalogue data."""
 
@@ -114,8 +124,11 @@ class Hob:
         """Axial distance of the teeth on one edge [mm]."""
         return self.axial_pitch * self.edge_scale
 
-    def tooth(self) -> ToothProfile:
-        """Outline of the edge, over its axial position: tan alpha_x = tan alpha_n / cos gamma_0, scaled."""
+    def tooth(self, lead_error_mm: float = 0.0) -> ToothProfile:
+        """Outline of the edge, over its axial position: tan alpha_x = tan alpha_n / cos gamma_0, scaled.
+
+        A thread whose lead is longer sets its teeth further apart, and leaves them as they are.
+        """
         tip = self.outside_diameter_mm / 2.0
         chain = self.profile
         if chain is None:
@@ -131,16 +144,27 @@ class Hob:
                 chamfer_height=self.chamfer_height_mm,
                 chamfer_angle=self._on_edge(self.chamfer_angle_deg),
             ).chain()
-        return tooth_profile(chain, tip=tip, land=True, pitch=self.edge_pitch)
+        pitch = self.edge_pitch + lead_error_mm * self.edge_scale / self.starts
+        return tooth_profile(chain, tip=tip, land=True, pitch=pitch)
 
-    def cutter(self, swivel: float) -> Cutter:
-        """The hob set at `swivel` = eta [rad] from the machine's Y (geometry.md 2)."""
+    def cutter(self, swivel: float, errors: HobErrors | None = None) -> Cutter:
+        """The hob set at `swivel` = eta [rad] from the machine's Y (geometry.md 2).
+
+        Raises InputError for errors that are not this hob's.
+        """
+        error = errors or HobErrors()
+        if len(error.gash_rad) not in {0, self.gashes}:
+            raise InputError(
+                f"{len(error.gash_rad)} gash errors for a hob with {self.gashes} gashes",
+                remedy=f"valid: {self.gashes} of them, or none",
+            )
         gash = np.arange(self.gashes)
-        lead = self.sign * self.starts * self.edge_pitch
+        tooth = self.tooth(error.lead_mm)
+        lead = self.sign * self.starts * tooth.pitch
         return Cutter(
-            gash_angle=2.0 * math.pi * gash / self.gashes,
+            gash_angle=2.0 * math.pi * gash / self.gashes + np.array(error.gash_rad or 0.0),
             gash_shift=self.shift_mm + lead * gash / self.gashes,
-            profile=self.tooth(),
+            profile=tooth,
             half_length=math.inf if self.length_mm is None else self.length_mm / 2.0,
             shift=self.shift_mm,
             swivel=math.pi / 2.0 - swivel,

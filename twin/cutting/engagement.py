@@ -66,15 +66,26 @@ def inner_radius(cutter: Cutter) -> float:
 
 def twisted(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float:
     """How far the edges' twist turns them about the axis at most, where they can meet stock [rad]."""
-    if not cutter.twist:
-        return 0.0
+    return abs(cutter.twist) * _along(motion, stock, cutter.radius, cutter.shift) if cutter.twist else 0.0
+
+
+def sway(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> tuple[float, float]:
+    """How far the tool's own axis leans at most [rad], and how far off its centre it meets stock [mm]."""
+    if motion.lean is None:
+        return 0.0, 0.0
+    far = math.hypot(_along(motion, stock, 2.0 * cutter.radius, 0.0), 2.0 * cutter.radius)
+    return float(np.hypot(*motion.lean.T).max()), far
+
+
+def _along(motion: CutterMotion, stock: StockCylinder, reach: float, middle: float) -> float:
+    """How far along its axis from its `middle` a tool of radius `reach` can meet stock [mm]."""
     axis = motion.basis[2]
     step = np.linalg.norm(np.diff(motion.centre, axis=0), axis=1).max(initial=0.0)
-    near = ~stock.clear_of(motion.centre, motion.basis, cutter.radius + step)
-    middle = np.array([0.0, 0.0, 0.5 * (stock.z_low + stock.z_high)])
+    near = ~stock.clear_of(motion.centre, motion.basis, reach + step)
+    centre = np.array([0.0, 0.0, 0.5 * (stock.z_low + stock.z_high)])
     half = 0.5 * (stock.z_high - stock.z_low) * abs(axis[2]) + stock.radius * math.hypot(axis[0], axis[1])
-    off = np.abs((middle - motion.centre[near]) @ axis - cutter.shift)
-    return abs(cutter.twist) * (float(off.max(initial=0.0)) + half + step)
+    off = np.abs((centre - motion.centre[near]) @ axis - middle)
+    return float(off.max(initial=0.0)) + half + step
 
 
 def stock_speed(motion: CutterMotion, radius: float) -> Floats:

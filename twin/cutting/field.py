@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
-from twin.cutting.engagement import StockCylinder, inner_radius, twisted
+from twin.cutting.engagement import StockCylinder, inner_radius, sway, twisted
 from twin.cutting.meeting import Meeting, State
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passes import Passes, find_passes
@@ -54,12 +54,18 @@ class DepthField:
         # one line per interval between samples: a pair reads it in one piece
         self._table = np.ascontiguousarray(np.vstack([rows[:, :-1], np.diff(rows, axis=1)]).T)
         self._table[:, 0] = np.remainder(self._table[:, 0] + math.pi, 2.0 * math.pi) - math.pi
+        self._lean: Floats | None = None
+        """as `_table`, of the components of the tool's own axis"""
+        if motion.lean is not None:
+            self._lean = np.hstack([motion.lean[:-1], np.diff(motion.lean, axis=0)])
         self._moved = not np.array_equal(motion.mount.rotation, np.eye(3)) or motion.mount.translation.any()
         samples = np.arange(rows.shape[1], dtype=float)
         at = [np.interp(self.passes.at, samples, row) for row in rows]
         self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
         profile = cutter.profile
         stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
+        lean, far = sway(cutter, motion, stock)
+        self._sway = lean * far
         spread = self._spread(stock)
         teeth = profile.teeth(*spread)
         pieces = len(profile.pieces)
@@ -88,7 +94,7 @@ class DepthField:
         reach = stock.radius * math.hypot(axis[0], axis[1])
         ends = np.array([stock.z_low, stock.z_high]) * axis[2]
         off = -axis @ self._seen[2:] - self.passes.shift
-        slack = reach + self.passes.travel
+        slack = reach + self.passes.travel + self._sway
         low, high = off + ends.min() - slack, off + ends.max() + slack
         return float(low.min(initial=0.0)), float(high.max(initial=0.0))
 
@@ -214,7 +220,7 @@ class DepthField:
         y = local[0] * state[1] + local[1] * state[0] - state[3]
         z = local[2] - state[4]
         a, b, _ = self._basis @ np.stack([x, y, z])
-        return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel)
+        return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel + self._sway)
 
     def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:
         """Rows and bites of the passes `index` (m,) that may cut within `radius` (m,) of `points` (m, 3)."""
@@ -314,6 +320,17 @@ class DepthField:
         rate = np.stack([-y * d_work - d_cx, x * d_work - d_cy, -d_cz])
         a, b, s = self._basis @ offset
         a_rate, b_rate, s_rate = self._basis @ rate
+        lean = np.zeros((2, 0))
+        if self._lean is not None:
+            x, y, d_x, d_y = self._lean.take(cell, axis=0).T
+            x, y = x + part * d_x, y + part * d_y
+            lean = np.stack([x, y])
+            a_rate, b_rate, s_rate = (
+                a_rate - x * s_rate - d_x * s,
+                b_rate - y * s_rate - d_y * s,
+                s_rate + x * a_rate + y * b_rate + d_x * a + d_y * b,
+            )
+            a, b, s = upright(a, b, s, lean)
         rho2 = a * a + b * b
         rho = np.sqrt(rho2)
         tool = tool + part * d_tool
@@ -335,6 +352,7 @@ class DepthField:
             lag_rate=lag_rate,
             tool_angle=tool,
             tool_rate=d_tool,
+            lean=lean,
         )
 
     def _gradient(self, state: State, by: tuple[Floats, Floats], by_turn: Floats, follows: Floats) -> Floats:
@@ -351,6 +369,19 @@ class DepthField:
         if self.cutter.twist:
             by_s = by_s - drift * state.rho * self.cutter.twist
         across = np.stack([by_rho * a - drift * b, by_rho * b + drift * a, by_s])
+        if self._lean is not None:
+            across = np.stack(upright(across[0], across[1], across[2], -state.lean))
         gx, gy, gz = self._basis.T @ across
         turned = np.stack([gx * state.cos + gy * state.sin, gy * state.cos - gx * state.sin, gz])
         return (self._mount.rotation.T @ turned if self._moved else turned).T
+
+
+def upright(a: Floats, b: Floats, s: Floats, lean: Floats) -> tuple[Floats, Floats, Floats]:
+    """A vector (a, b, s) along the tool carrier's axes, seen from the tool whose axis leans by (2, m).
+
+    Rodrigues' formula for the shortest way; with −lean the way back.
+    """
+    x, y = lean
+    high = np.sqrt(1.0 - x * x - y * y)
+    turn = (x * b - y * a) / (1.0 + high)
+    return high * a - x * s - y * turn, high * b - y * s + x * turn, high * s + x * a + y * b

@@ -46,8 +46,12 @@ class State:
     lag_rate: Floats
     tool_angle: Floats
     tool_rate: Floats
+    lean: Floats
+    """(2, m) of the tool's own axis (`CutterMotion.lean`); (2, 0) where it has none"""
 
     def put(self, rows: Ints, part: "State") -> None:
         """Replace some points."""
         for name in self.__slots__:
-            getattr(self, name)[..., rows] = getattr(part, name)
+            values = getattr(self, name)
+            if values.size:
+                values[..., rows] = getattr(part, name)

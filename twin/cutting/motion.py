@@ -46,6 +46,9 @@ class CutterMotion:
     """(n, 3) [mm] tool centre"""
     basis: Floats
     """(3, 3) constant; rows: direction of tool angle 0, u × that, u = tool axis in its positive sense"""
+    lean: Floats | None = None
+    """(n, 2) components of the tool's own axis along `basis[0]` and `basis[1]` where it does not keep to
+    `basis[2]`: it tilts about the tool centre, by the shortest way"""
     mount: RigidTransform = field(default_factory=RigidTransform)
     """part frame -> work spindle frame; identity where the part is clamped without fault"""
 
@@ -55,6 +58,8 @@ class CutterMotion:
         if n < 2:
             raise InputError(f"a recording of {n} sample(s) holds no motion", remedy="valid: 2 or more")
         shapes = {"time_s": (n,), "work_angle": (n,), "tool_angle": (n,), "centre": (n, 3), "basis": (3, 3)}
+        if self.lean is not None:
+            shapes["lean"] = (n, 2)
         for name, shape in shapes.items():
             values = getattr(self, name)
             if values.shape != shape:

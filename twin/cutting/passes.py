@@ -7,7 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
-from twin.cutting.engagement import StockCylinder, inner_radius, stock_speed, turning_runs, twisted
+from twin.cutting.engagement import (
+    StockCylinder,
+    inner_radius,
+    stock_speed,
+    sway,
+    turning_runs,
+    twisted,
+)
 from twin.cutting.motion import CutterMotion
 
 Floats = NDArray[np.float64]
@@ -81,25 +88,36 @@ def find_passes(
     at, angle, gash, first, last = (np.concatenate(column) for column in zip(*rows, strict=True))
     order = np.lexsort((gash, angle, at))
     edges = at[order], angle[order], gash[order], first[order], last[order]
-    passes = _bounded(cutter, motion, stock.radius, reach, edges)
+    lean, far = sway(cutter, motion, stock)
+    passes = _bounded(cutter, motion, (stock.radius, reach, far), edges)
     samples = np.arange(len(motion.tool_angle), dtype=float)
     centre = np.stack([np.interp(passes.at, samples, column) for column in motion.centre.T], axis=1)
-    keep = ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried)
+    keep = ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried + lean * far)
     return Passes(**{name: getattr(passes, name)[keep] for name in Passes.__dataclass_fields__})
 
 
 def _bounded(
     cutter: Cutter,
     motion: CutterMotion,
-    stock_radius: float,
-    reach: float,
+    sizes: tuple[float, float, float],
     edges: tuple[Floats, Floats, Ints, Floats, Floats],
 ) -> Passes:
-    """Passes from their (at, angle, gash, first, last), with the bounds that the culling proofs need."""
+    """Passes from their (at, angle, gash, first, last), with the bounds that the culling proofs need.
+
+    `sizes` are the stock's radius, the angle of the edges' way that counts, and how far off its centre a tool
+    that leans can meet stock: that seems to move as much faster.
+    """
+    stock_radius, reach, far = sizes
     at, angle, gash, first, last = edges
     samples = np.arange(len(motion.tool_angle), dtype=float)
     tool_rate = np.abs(np.diff(motion.tool_angle))
+    turning = np.abs(np.diff(motion.work_angle))
     speed = stock_speed(motion, stock_radius)
+    jump = stock_radius * _jumps(motion.work_angle) + np.linalg.norm(_jumps(motion.centre), axis=1)
+    if motion.lean is not None:
+        leaning = np.linalg.norm(np.diff(motion.lean, axis=0), axis=1)
+        turning, speed = turning + leaning, speed + far * leaning
+        jump += far * np.linalg.norm(_jumps(motion.lean), axis=1)
     # window of samples in which the edge is within `reach` of the work's side
     way = np.where(motion.tool_angle[last.astype(int)] > motion.tool_angle[first.astype(int)], 1.0, -1.0)
     rising = np.maximum.accumulate(np.cumsum(np.concatenate([[0.0], tool_rate])))
@@ -116,14 +134,13 @@ def _bounded(
     creep = np.concatenate([[0.0], np.cumsum(np.where(slow, speed, 0.0))])
     # a jump counts by the slower side
     slower = np.minimum(across, np.append(across[1:], across[-1]))
-    jump = stock_radius * _jumps(motion.work_angle) + np.linalg.norm(_jumps(motion.centre), axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         slant = np.where(slow, 0.0, speed / across)
         steep = speed / slower
         jump = (1.0 + steep) * jump + steep * inner * _jumps(motion.tool_angle)
         bounds = {
             "slant": slant,
-            "turn": np.where(slow, 0.0, np.abs(np.diff(motion.work_angle)) / across),
+            "turn": np.where(slow, 0.0, turning / across),
             "jolt": jump / slower,
             "samples": np.where(slow, 0.0, 1.0 / across),
         }

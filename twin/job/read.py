@@ -14,7 +14,8 @@ from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
-from twin.faults.table import Faults
+from twin.faults.hob_errors import hob_errors
+from twin.faults.table import Faults, SlideTilt
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.job.expect import Expectation, read_expectations
 from twin.job.locate import line_of
@@ -114,7 +115,7 @@ class _Reader:
             program=self._program(),
             nominal=self._nominal(work, tools),
             inspection=self._table(InspectionTable, ("inspection",)),
-            faults=self._table(Faults, ("faults",)),
+            faults=self._faults(tools),
             events=self._events(),
             expect=self._expect(),
         )
@@ -162,6 +163,27 @@ class _Reader:
                 self._fail(("tools", name), f"tools.{name} is no tool number", "1 to 99")
             tools[int(name)] = self._tagged(TOOLS, ("tools", name))
         return tools
+
+    def _faults(self, tools: dict[int, Tool]) -> Faults:
+        faults = self._table(Faults, ("faults",))
+        hobs = [tool for tool in tools.values() if isinstance(tool, Hob)]
+        raw = self._raw(("faults",))
+        if "slide_tilt_deg" in raw:
+            tilt = self._table(SlideTilt, ("faults", "slide_tilt_deg"))
+            faults = dataclasses.replace(faults, slide_tilt_deg=tilt)
+        given = [name for name in raw if name.startswith("hob_")]
+        if given and not hobs:
+            self._fail(("faults", given[0]), f"{given[0]}: the job has no hob")
+        for hob in hobs:
+            try:
+                hob.cutter(0.0, hob_errors(faults))
+            except InputError as cause:
+                even = len(faults.hob_gash_error_deg) in {0, hob.gashes}
+                key = "hob_lead_error_um_per_turn" if even else "hob_gash_error_deg"
+                self._fail(
+                    ("faults", key), f"faults.{key}: {cause.text}", cause.remedy.removeprefix("valid: ")
+                )
+        return faults
 
     def _program(self) -> Path:
         raw = self._raw(("program",))

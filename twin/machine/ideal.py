@@ -1,15 +1,22 @@
 """The machine whose axes follow their setpoints exactly."""
 
+from collections.abc import Mapping
+
 from controller.clock import Chunk, Feedback, Load
+from twin.faults.encoders import CyclicError, stands
 from twin.machine.following import couple, require_chunk
 from twin.machine.watching import Watcher
 
 
 class IdealMachine:
-    """actual = setpoint, couplings applied; forces move nothing. `axes` = number of system axes."""
+    """Encoders read their setpoints, couplings applied; forces move nothing.
 
-    def __init__(self, axes: int) -> None:
+    `axes` = number of system axes, `encoders` = errors of some of them by column.
+    """
+
+    def __init__(self, axes: int, encoders: Mapping[int, CyclicError] | None = None) -> None:
         self._axes = axes
+        self._encoders = encoders or {}
         self._tick = 0
         self._watcher = Watcher()
 
@@ -21,7 +28,9 @@ class IdealMachine:
         position = couple(chunk)[:ticks]
         signals = self._watcher.end(ticks, reached=ticks > 0)
         self._tick += ticks
-        return Feedback(ticks=ticks, setpoint=position, actual=position.copy(), signals=signals)
+        return Feedback(
+            ticks=ticks, setpoint=position, actual=stands(self._encoders, position), signals=signals
+        )
 
     def rest(self, ticks: int) -> None:
         """Let `ticks` pass in which nothing moves."""

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import InputError
-from twin.faults.clamping import clamping
+from twin.faults.mounts import clamping
 from twin.faults.table import Faults
 from twin.job import read_job
 from twin.outcome import Options
@@ -63,26 +62,3 @@ def test_a_hexagon_is_off_centre_from_the_datum_that_was_clamped_off_centre(tmp_
     assert (axis is not None) == (datum == "fit")
     if axis is not None:
         np.testing.assert_allclose([axis.x_mm, axis.y_mm], -0.05 * towards, atol=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("work_eccentricity_mm = -0.1", ["faults.work_eccentricity_mm", ">= 0"]),
-        ("work_eccentricity_mm = nan", ["work_eccentricity_mm", "finite"]),
-        ("work_tilt_deg = 45.0", ["faults.work_tilt_deg", "< 10"]),
-        ('work_tilt_deg = "much"', ["faults.work_tilt_deg", "float"]),
-        ("work_excentricity_mm = 0.1", ["unknown key 'work_excentricity_mm'", "work_eccentricity_mm"]),
-    ],
-)
-def test_faults_that_cannot_be_are_refused_with_their_line(tmp_path, line, words):
-    job = tmp_path / "job"
-    shutil.copytree(SCENE, job)
-    text = (job / "job.toml").read_text(encoding="utf-8") + "\n[faults]\n" + line + "\n"
-    (job / "job.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(InputError) as refused:
-        read_job(job)
-    assert refused.value.place is not None
-    assert refused.value.place.line == len(text.splitlines())
-    for word in words:
-        assert word in f"{refused.value.text} {refused.value.remedy}"
