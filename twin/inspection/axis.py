@@ -10,6 +10,7 @@ import numpy as np
 from twin.errors import PartError
 from twin.inspection.recognise import Form, Outline
 from twin.inspection.result import Axis
+from twin.inspection.sections import points_between
 from twin.inspection.solid import Floats, Solid, solid_of
 
 FACING = 0.9
@@ -89,16 +90,19 @@ def _surrounded(points: Floats) -> bool:
 
 def _tips(solid: Solid, outline: Outline) -> Floats:
     """Return the outermost corner (n, 3) of every tooth, or polygon's corner, at several heights."""
-    x, y, z = solid.vertices.T
-    chosen = np.flatnonzero((z >= outline.low) & (z <= outline.high))
+    z = solid.vertices[:, 2]
+    points = solid.vertices[(z >= outline.low) & (z <= outline.high)]
+    if len(points) == 0 or np.ptp(points[:, 2]) < 0.5 * (outline.high - outline.low):
+        points = points_between(solid, outline.low, outline.high, planes=SLABS)
+    x, y, z = points.T
     angle = np.arctan2(y, x) - outline.phase - outline.twist * (z - outline.middle)
     sector = np.round(angle * outline.count / (2 * math.pi)).astype(np.int64) % outline.count
     part = (z - outline.low) / (outline.high - outline.low)
     slab = np.clip((part * SLABS).astype(np.int64), 0, SLABS - 1)
-    cell = (sector * SLABS + slab)[chosen]
-    order = np.lexsort((np.hypot(x, y)[chosen], cell))
+    cell = sector * SLABS + slab
+    order = np.lexsort((np.hypot(x, y), cell))
     last = np.flatnonzero(np.diff(cell[order], append=-1))
-    return solid.vertices[chosen[order[last]]]
+    return points[order[last]]
 
 
 def _cylinder(points: Floats, datum: str) -> tuple[Axis, np.ndarray]:

@@ -122,6 +122,16 @@ def plane_segments_in_parts(solid: Solid, heights: Floats) -> Iterator[Segments]
         yield plane_segments(solid, heights[part == number])
 
 
+def points_between(solid: Solid, low: float, high: float, *, planes: int = 9) -> Floats:
+    """Return points (n, 3) of a solid's edges at heights between low and high [mm].
+
+    For where a mesh has no vertices of its own, its faces running on beyond the heights looked at.
+    """
+    heights = low + (high - low) * (np.arange(planes) + 0.5) / planes
+    segments = plane_segments(solid, heights)
+    return np.column_stack([segments.start, heights[segments.plane]])
+
+
 def circle_crossings(segments: Segments, radii: Floats) -> Crossings:
     """Cross sections with circles of `radii` (m,) [mm], ascending; exact on each chord."""
     r_start = np.hypot(*segments.start.T)

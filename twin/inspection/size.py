@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from twin.inspection.reading import Placed
-from twin.inspection.solid import Floats, Solid
+from twin.inspection.sections import points_between
+from twin.inspection.solid import Floats, Ints, Solid
 
 
 def tip_and_root_radii(solid: Solid, placed: Placed, *, root_radius: float) -> tuple[Floats, Floats]:
@@ -13,11 +14,23 @@ def tip_and_root_radii(solid: Solid, placed: Placed, *, root_radius: float) -> t
 
     `root_radius` [mm] is about where the gaps end: what lies well inside, a bore, is left out.
     """
-    x, y, z = solid.vertices.T
-    radius = np.hypot(x, y)
-    chosen = (z >= placed.low) & (z <= placed.high) & (radius >= 0.95 * root_radius)
-    angle = placed.turned_back(np.arctan2(y[chosen], x[chosen]), z[chosen])
-    radius = radius[chosen]
+    z = solid.vertices[:, 2]
+    inside = solid.vertices[(z >= placed.low) & (z <= placed.high)]
+    tips, gaps = _extremes(inside, placed, least=0.95 * root_radius)
+    if not (np.isfinite(tips).all() and np.isfinite(gaps).all()):
+        between = points_between(solid, placed.low, placed.high)
+        more = _extremes(between, placed, least=0.95 * root_radius)
+        tips, gaps = (
+            np.where(np.isfinite(one), one, other) for one, other in zip((tips, gaps), more, strict=True)
+        )
+    return tips, gaps
+
+
+def _extremes(points: Floats, placed: Placed, *, least: float) -> tuple[Floats, Floats]:
+    """Return the largest radius of every tooth and the smallest of every gap (z,); infinite: none."""
+    radius = np.hypot(points[:, 0], points[:, 1])
+    points, radius = points[radius >= least], radius[radius >= least]
+    angle = placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2])
     teeth = placed.gear.teeth
     tips = np.full(teeth, -np.inf)
     np.maximum.at(tips, placed.tooth(angle)[0], radius)
@@ -42,16 +55,14 @@ def measure_span(
     needed = gear.span(k) * math.sin(abs(gear.base_helix))
     if placed.high - placed.low <= needed:
         return None, f"the span over {k} teeth of this helix needs a face wider than {needed:.2f} mm"
-    x, y, z = solid.vertices.T
-    radius = np.hypot(x, y)
-    chosen = (radius >= form_radius) & (radius <= tip_radius) & (z >= placed.low) & (z <= placed.high)
-    points, radius = solid.vertices[chosen], radius[chosen]
-    tooth, offset = placed.tooth(placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2]))
-    # sorted by flank: the right flank of a tooth, then its left one
-    flank = 2 * tooth + (offset > 0)
-    order = np.argsort(flank, kind="stable")
-    points, radius = points[order], radius[order]
-    ends = np.searchsorted(flank[order], np.arange(2 * gear.teeth + 1))
+    z = solid.vertices[:, 2]
+    points, ends = _by_flank(
+        solid.vertices[(z >= placed.low) & (z <= placed.high)], placed, form_radius, tip_radius
+    )
+    if (np.diff(ends) == 0).any():
+        between = points_between(solid, placed.low, placed.high)
+        points, ends = _by_flank(between, placed, form_radius, tip_radius)
+    radius = np.hypot(points[:, 0], points[:, 1])
     spans = []
     for first in range(gear.teeth):
         middle = placed.phase - 2 * math.pi * (first + (k - 1) / 2) / gear.teeth + math.pi / 2
@@ -75,3 +86,16 @@ def measure_span(
             span += float(reach[touch])
         spans.append(span)
     return float(np.mean(spans)), ""
+
+
+def _by_flank(points: Floats, placed: Placed, low: float, high: float) -> tuple[Floats, Ints]:
+    """Sort points between two radii [mm] by flank: a tooth's right one, then its left one.
+
+    Returns the points (n, 3), and where each flank's begin and the last one's end (2 z + 1,).
+    """
+    radius = np.hypot(points[:, 0], points[:, 1])
+    points = points[(radius >= low) & (radius <= high)]
+    tooth, offset = placed.tooth(placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2]))
+    flank = 2 * tooth + (offset > 0)
+    order = np.argsort(flank, kind="stable")
+    return points[order], np.searchsorted(flank[order], np.arange(2 * placed.gear.teeth + 1))

@@ -7,6 +7,7 @@ import pytest
 from twin.errors import InputError
 from twin.inspection.deviation import deviation_map
 from twin.inspection.inspection import inspect
+from twin.inspection.involute import geometry
 from twin.inspection.nominal import GearNominal, PolygonNominal
 from twin.inspection.result import Verdict
 from twin.inspection.sheet import to_json
@@ -130,6 +131,27 @@ def test_gear_on_a_shaft_is_whole(parts, spur, named):
     result = inspect(*mesh_of(solid(spur) + shaft), named(accuracy_class=8))
     assert result.verdict is Verdict.IN
     assert result.gear.root_diameter_mm == pytest.approx(35.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("helix_deg", [0.0, 20.0])
+def test_gear_between_two_journals(parts, named, helix_deg):
+    """Its faces run along the whole width: between the journals the mesh has no vertices of its own."""
+    step = 20.0 if helix_deg == 0 else 0.5
+    gear = parts.gear_mesh(teeth=20, module=2.0, helix_deg=helix_deg, z_step=step, roll_step=0.2)
+    journals = m3.Manifold.cylinder(80.0, 9.0, 9.0, 96, True).translate((0, 0, -10))
+    mesh = mesh_of(solid(gear) + journals)
+    nominal = named(helix_deg=helix_deg, accuracy_class=8)
+    d = 40 / np.cos(np.radians(helix_deg))
+    for own_axis, offset in ((False, (0.0, 0.0)), (True, (0.06, 0.08))):
+        result = inspect(*parts.moved(mesh, offset=offset), nominal, own_axis=own_axis)
+        assert result.verdict is Verdict.IN
+        assert result.gear.tip_diameter_mm == pytest.approx(d + 4, abs=1e-3)
+        # a chord of the gap's bottom comes inside the root circle by less than 2 µm
+        assert result.gear.root_diameter_mm == pytest.approx(d - 5, abs=4e-3)
+        span = geometry(nominal).span(3)
+        assert result.gear.span_mm == pytest.approx(span, abs=result.gear.uncertainty["span_mm"] + 1e-5)
+        if own_axis:
+            assert result.axis.offset_mm == pytest.approx(0.1, abs=2e-4)
 
 
 def test_inside_out_is_turned_and_said(spur, named):
