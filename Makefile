@@ -10,7 +10,7 @@ demo: $(READY)
 	$(BIN)/hobtwin run scenes/spur_m2_z20
 
 test: $(DEV)
-	$(BIN)/pytest --numprocesses auto --dist worksteal -p no:benchmark
+	$(BIN)/pytest --numprocesses auto --dist worksteal -p no:benchmark -rs
 
 install: $(DEV)
 

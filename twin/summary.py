@@ -1,6 +1,7 @@
 """A run in words and rows: for the terminal and for the report."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from twin.inspection.result import GearResult, Inspection, PolygonResult
 from twin.outcome import Outcome
 from twin.recording import Recording
 from twin.regression.judge import table
-from twin.report.data import Message, Part, Program, ReportData, Row, Severity
+from twin.report.data import Message, Part, Program, ReportData, Row, Severity, ToolOutline
 from twin.report.words import headline
 from twin.sync import Spectrum
 
@@ -36,7 +37,13 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
         messages=messages(outcome),
         part=Part(vertices=remains.vertices, faces=remains.faces, deviation_um=deviation_um),
         inspection=outcome.inspection,
-        programs=(Program(name=outcome.job.program.name, text=_text(outcome)),),
+        programs=_programs(outcome),
+        tools=tuple(
+            ToolOutline(
+                number=tool.number, radius_mm=tool.cutter.radius, half_length_mm=tool.cutter.half_length
+            )
+            for tool in outcome.ready.tools
+        ),
     )
 
 
@@ -258,8 +265,16 @@ def _rotary(outcome: Outcome) -> frozenset[str]:
     return frozenset(letters[k] for k in (outcome.ready.work_column, outcome.ready.tool_column))
 
 
-def _text(outcome: Outcome) -> str:
-    data = outcome.job.program.read_bytes()
+def _programs(outcome: Outcome) -> tuple[Program, ...]:
+    """The main program, then what else moved something: the files of subprograms."""
+    main = outcome.job.program
+    moved = dict.fromkeys(block.file for block in outcome.session.recording.blocks)
+    others = [Path(name) for name in moved if Path(name) != main]
+    return tuple(Program(name=str(path), text=_text(path)) for path in (main, *others) if path.is_file())
+
+
+def _text(path: Path) -> str:
+    data = path.read_bytes()
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -82,8 +82,18 @@ class Program:
     """One NC program as the controller read it."""
 
     name: str
-    """the file name that messages use"""
+    """of the file, as messages and the recording's blocks have it"""
     text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolOutline:
+    """The cylinder about a tool."""
+
+    number: int
+    radius_mm: float
+    half_length_mm: float
+    """inf where it is longer than any cut needs"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +125,7 @@ class ReportData:
     inspection: Inspection = field(default_factory=Inspection)
     programs: tuple[Program, ...] = ()
     pictures: tuple[Picture, ...] = ()
+    tools: tuple[ToolOutline, ...] = ()
     sync_error_arcsec: Floats | None = None
     """(n,) of the work against the tool, one a sample of the recording, NaN out of sync"""
 

@@ -1,6 +1,7 @@
 """The table at the head of every page of the sheet: what was measured, where, against what."""
 
 import math
+from pathlib import PurePath
 
 from twin.inspection.involute import geometry
 from twin.inspection.nominal import GearNominal
@@ -24,7 +25,7 @@ def gear_header(report: ReportData, gear: GearResult) -> Pairs:
     lead = number(abs(ideal.lead), 3, "mm") if ideal.lead else "∞"
     return (
         ("Part", report.title),
-        ("Program", ", ".join(program.name for program in report.programs) or MISSING),
+        ("Program", _programs(report)),
         ("Measured on", _mesh(report)),
         ("Datum", _datum(report.inspection)),
         ("Number of teeth z", str(reference.number_of_teeth)),
@@ -39,11 +40,11 @@ def gear_header(report: ReportData, gear: GearResult) -> Pairs:
         ("Root Ø d_{f}", number(gear.root_diameter_mm, 3, "mm")),
         ("Face width b", number(teeth_high - teeth_low, 3, "mm")),
         ("Measuring Ø d_{M}", number(ideal.measuring_diameter, 3, "mm")),
-        ("Profile range", f"Ø {gear.profile_range_mm[0]:.2f} … {gear.profile_range_mm[1]:.2f} mm"),
+        ("Profile range", f"Ø {gear.profile_range_mm[0]:.2f} … {gear.profile_range_mm[1]:.2f}"),
         ("L_{α}", number(high - low, 2, "mm")),
-        ("Helix range", f"z {number(helix[0], 2)} … {number(helix[1], 2)} mm" if helix else MISSING),
+        ("Helix range", f"z {number(helix[0], 2)} … {number(helix[1], 2)}" if helix else MISSING),
         ("L_{β}", number(helix[1] - helix[0], 2, "mm") if helix else MISSING),
-        ("Profile and pitch at", f"z {number(gear.measuring_plane_mm, 2)} mm"),
+        ("Measuring plane", f"z {number(gear.measuring_plane_mm, 2)} mm"),
         ("Teeth traced", _listed(traced)),
         ("Class allowed", tables.class_allowed(report.inspection)),
         ("Class reached", tables.class_reached(gear, "overall")),
@@ -56,18 +57,22 @@ def polygon_header(report: ReportData, polygon: PolygonResult) -> Pairs:
     width = f"{plain(reference.across_flats_mm)} mm {reference.tolerance}" if reference else MISSING
     return (
         ("Part", report.title),
-        ("Program", ", ".join(program.name for program in report.programs) or MISSING),
+        ("Program", _programs(report)),
         ("Measured on", _mesh(report)),
         ("Datum", _datum(report.inspection)),
         ("Sides", str(reference.number_of_sides if reference else polygon.number_of_sides)),
         ("Across flats", width),
-        ("Faces from", f"z {number(polygon.range_mm[0], 2)} … {number(polygon.range_mm[1], 2)} mm"),
+        ("Faces from", f"z {number(polygon.range_mm[0], 2)} … {number(polygon.range_mm[1], 2)}"),
         ("Section at", f"z {number(sum(polygon.range_mm) / 2, 2)} mm"),
     )
 
 
+def _programs(report: ReportData) -> str:
+    return ", ".join(PurePath(program.name).name for program in report.programs) or MISSING
+
+
 def _mesh(report: ReportData) -> str:
-    return f"mesh of {len(report.part.faces):,} facets".replace(",", " ") if report.part else "mesh"
+    return f"{len(report.part.faces):,} facets".replace(",", " ") if report.part else "mesh"
 
 
 def _datum(inspection: Inspection) -> str:

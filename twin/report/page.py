@@ -16,7 +16,8 @@ ASSETS = Path(__file__).parent / "assets"
 STYLES = ("base.css", "charts.css")
 PRINT = "print.css"
 """comes last: it has the last word"""
-SCRIPTS = ("tabs.js",)
+SCRIPT = "tabs.js"
+"""comes last: the others hear which page it shows first"""
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe\uffff]")
 _SUBSCRIPT = re.compile(r"_\{([^}]*)\}")
 
@@ -45,7 +46,7 @@ def render(report: ReportData) -> str:
         tabs=tabs,
         css=_joined((*STYLES, *_beside(sections, "css"), PRINT)),
         running_title=Markup(_css_string(report.title)),
-        script=_joined((*SCRIPTS, *_beside(sections, "js"))),
+        script=_joined((*_beside(sections, "js"), SCRIPT)),
     )
     return _CONTROL.sub("\ufffd", html)
 

@@ -38,7 +38,9 @@ function finish(name) {
   const [positions, normals, colours, triangles] = uploads;
   fs.writeFileSync(output, JSON.stringify({ positions, normals, colours, triangles }));
 }
+globalThis.CustomEvent = class {};
 globalThis.document = {
+  dispatchEvent: () => {},
   querySelectorAll: () => [box], createElement: element, addEventListener: () => {}, getElementById: () => null,
 };
 globalThis.IntersectionObserver = class {

@@ -19,11 +19,11 @@ from twin.report.scale import largest, nice_floor, number, plain
 MOST_TRACES = 8
 """of one flank that fit side by side"""
 FEWEST_COLUMNS = 4
-WIDTH, HEIGHT = 180.0, 62.0
+WIDTH, HEIGHT = 180.0, 60.0
 """of the drawing [mm]"""
 MIDDLE = 25.0
 """width of the column between the panels [mm]"""
-TOP, TALL = 6.5, 48.0
+TOP, TALL = 6.5, 46.0
 """of the panels [mm]"""
 BAND_AT_MOST = 8.0
 """times the largest trace that a tolerance band may be wide, to be drawn"""
@@ -201,11 +201,11 @@ def _draw_middle(plot: Plot, kind: Kind, gear: GearResult, traces: tuple[Trace, 
                 middle, float(plot.down(mark)) + (-0.9 if low_end else 2.6), text, "small", anchor="middle"
             )
     drawing.text(middle, HEIGHT - 1.5, kind.position, "small soft", anchor="middle")
-    _draw_scale_box(drawing, scale, middle, TOP + TALL / 2)
+    _draw_scale_box(drawing, scale, middle, TOP + TALL / 2 - 5.0)
     if scale.tolerance_um is not None:
         text = kind.total[:-1] + f"T}} {plain(scale.tolerance_um)} µm"
-        drawing.text(middle, TOP + TALL / 2 + 13.0, text, "small", anchor="middle")
-        drawing.rectangle(middle - 4, TOP + TALL / 2 + 14.2, 8, 1.6, "tolerance")
+        drawing.text(middle, TOP + TALL / 2 + 7.0, text, "small", anchor="middle")
+        drawing.rectangle(middle - 4, TOP + TALL / 2 + 8.2, 8, 1.6, "tolerance")
 
 
 def _draw_scale_box(drawing: Drawing, scale: Scales, x: float, y: float) -> None:

@@ -2,17 +2,23 @@
 
 import math
 
-from twin.report.scale import nice_ceiling
+from twin.report.scale import nice_ceiling, nice_floor
 
 
 def ticks(low: float, high: float, most: int = 6) -> tuple[float, ...]:
-    """Multiples of 1, 2 or 5 × 10ⁿ from `low` to `high`, at most `most` of them (≥ 2), ascending.
+    """Multiples of the finest 1, 2 or 5 × 10ⁿ of which at most `most` (≥ 2) lie from `low` to `high`.
 
     Empty where the range is empty or not finite.
     """
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         return ()
-    step = nice_ceiling((high - low) / max(most - 1, 1))
+    step = nice_floor((high - low) / most)
+    while len(marks := _multiples(low, high, step)) > most:
+        step = nice_ceiling(1.5 * step)
+    return marks
+
+
+def _multiples(low: float, high: float, step: float) -> tuple[float, ...]:
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     return tuple(k * step for k in range(first, last + 1))
 

@@ -42,5 +42,4 @@ def maps_section(report: ReportData) -> Section | None:
             "across_name": unrolled.across_name,
             "legend": Legend.of(part.deviation_um),
         },
-        own_page=True,
     )

@@ -1,7 +1,16 @@
-"""The program beside the motion: which block did what, when."""
+"""The program beside the motion: which block did what, when, and where; `process.js` joins them."""
+
+import json
+import math
+from collections.abc import Iterable
+from pathlib import PurePath
+
+import numpy as np
+from markupsafe import Markup
 
 from twin.report import tables
-from twin.report.charts.motion import motion_chart
+from twin.report.blocks import BlockFacts, block_facts
+from twin.report.charts.motion import MotionChart, motion_chart
 from twin.report.data import ReportData
 from twin.report.sections.section import Section, Tab
 
@@ -12,6 +21,18 @@ def process_section(report: ReportData) -> Section | None:
     if recording is None and not report.programs:
         return None
     motion = motion_chart(recording, report.rotary_axes, report.sync_error_arcsec) if recording else None
+    facts = block_facts(recording) if recording else ()
+    number = {(fact.file, fact.line): k for k, fact in enumerate(facts)}
+    programs = []
+    shown: set[int] = set()
+    for program in report.programs:
+        lines = []
+        for line in tables.listing(program, report.messages):
+            block = None if line.number is None else number.get((program.name, line.number))
+            if block is not None:
+                shown.add(block)
+            lines.append((line, block))
+        programs.append((PurePath(program.name).name, lines))
     return Section(
         name="process",
         tab=Tab.PROCESS,
@@ -19,9 +40,49 @@ def process_section(report: ReportData) -> Section | None:
         values={
             "motion": motion,
             "recorded": recording is not None,
-            "programs": [
-                (program.name, tables.listing(program, report.messages)) for program in report.programs
-            ],
+            "programs": programs,
+            "data": Markup(json.dumps(_data(report, motion, facts, shown), separators=(",", ":"))),
+            "solid": report.solid_part is not None,
         },
         own_page=True,
     )
+
+
+def _data(
+    report: ReportData, motion: MotionChart | None, facts: tuple[BlockFacts, ...], shown: set[int]
+) -> dict[str, object]:
+    """What the script needs of the run: axes, panels of the plots, tools, and the blocks by their numbers."""
+    axes = report.recording.axes if report.recording else ()
+    return {
+        "axes": [{"name": letter, "turns": letter in report.rotary_axes} for letter in axes],
+        "panels": motion.panels if motion else (),
+        "time": motion.time if motion else (0.0, 1.0),
+        "tools": {
+            tool.number: {
+                "radius": tool.radius_mm,
+                "half": tool.half_length_mm if math.isfinite(tool.half_length_mm) else None,
+            }
+            for tool in report.tools
+        },
+        "blocks": {k: _block(fact) for k, fact in enumerate(facts) if k in shown},
+    }
+
+
+def _block(fact: BlockFacts) -> dict[str, object]:
+    return {
+        "runs": [_rounded(run, 4) for run in fact.runs],
+        "count": fact.count,
+        "duration": round(fact.duration_s, 4),
+        "start": _rounded(fact.start, 4),
+        "end": _rounded(fact.end, 4),
+        "way": _rounded(fact.way, 4),
+        "error": _rounded(fact.error, 6),
+        "sync": fact.synced,
+        "tool": fact.tool,
+        "path": [None if np.isnan(point[0]) else _rounded(point, 2) for point in fact.path_mm],
+        "axis": _rounded(fact.axis, 4),
+    }
+
+
+def _rounded(values: Iterable[float], digits: int) -> list[float]:
+    return [round(float(value), digits) for value in values]

@@ -14,6 +14,7 @@
     svg.append(mark);
     return mark;
   });
+  const TALL = 300; /* of the enlarged map [pixels] */
   let chosen = 0;
 
   const images = [...svg.querySelectorAll("image")];
@@ -31,6 +32,7 @@
       const view = lens.querySelector("svg");
       view.setAttribute("viewBox", `${left} ${top} ${width} ${height}`);
       view.style.aspectRatio = `${width} / ${height}`;
+      view.style.width = `${Math.max((TALL * width) / height, 120)}px`;
       view.replaceChildren(holding(tile.box).cloneNode());
       ["x", "y", "width", "height"].forEach((name, i) => marks[n].setAttribute(name, tile.box[i]));
     });

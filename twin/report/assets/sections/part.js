@@ -161,9 +161,27 @@
       colour = vec4(min(base * (shown ? 0.35 + 0.65 * shade : shade), 1.0), 1.0);
     }`;
 
-  function program(gl) {
+  /* the tool's way and outline beside the part: lines of one colour */
+  const LINE_VERTEX = `#version 300 es
+    layout(location = 0) in vec3 position;
+    uniform mat3 turn;
+    uniform vec3 centre;
+    uniform vec3 scale;
+    uniform vec2 shift;
+    void main() {
+      vec3 p = turn * (position - centre);
+      gl_Position = vec4(p.xy * scale.xy + shift, -p.z * scale.z, 1.0);
+    }`;
+
+  const LINE_FRAGMENT = `#version 300 es
+    precision mediump float;
+    uniform vec4 ink;
+    out vec4 colour;
+    void main() { colour = ink; }`;
+
+  function program(gl, vertex, fragment) {
     const built = gl.createProgram();
-    for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+    for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, source);
       gl.compileShader(shader);
@@ -181,7 +199,8 @@
   }
 
   function upload(gl, mesh, paletteBytes) {
-    gl.bindVertexArray(gl.createVertexArray());
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
     const attributes = [
       [mesh.positions, 3, gl.FLOAT],
       [mesh.normals, 3, gl.FLOAT],
@@ -199,6 +218,41 @@
       [gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
       [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
     ]) gl.texParameteri(gl.TEXTURE_2D, name, value);
+    return array;
+  }
+
+  /* Draws what `set` was given last: strips of points [x, y, z], each with its colour. */
+  function lines(gl, centre) {
+    const built = program(gl, LINE_VERTEX, LINE_FRAGMENT);
+    const uniform = (name) => gl.getUniformLocation(built, name);
+    const places = Object.fromEntries(["turn", "centre", "scale", "shift", "ink"].map((name) => [name, uniform(name)]));
+    const array = gl.createVertexArray(), buffer = gl.createBuffer();
+    let strips = [];
+    return {
+      set(given) {
+        strips = given.filter(({ points }) => points.length > 1);
+        gl.bindVertexArray(array);
+        gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+        gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(strips.flatMap(({ points }) => points.flat())), gl.STATIC_DRAW);
+        gl.enableVertexAttribArray(0);
+        gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+      },
+      draw(turn, scale, shift) {
+        if (!strips.length) return;
+        gl.useProgram(built);
+        gl.bindVertexArray(array);
+        gl.uniformMatrix3fv(places.turn, false, turn);
+        gl.uniform3fv(places.centre, centre);
+        gl.uniform3fv(places.scale, scale);
+        gl.uniform2fv(places.shift, shift);
+        let first = 0;
+        for (const { points, ink } of strips) {
+          gl.uniform4fv(places.ink, ink);
+          gl.drawArrays(gl.LINE_STRIP, first, points.length);
+          first += points.length;
+        }
+      },
+    };
   }
 
   function bounds(positions) {
@@ -231,6 +285,8 @@
     return [-sa, -se * ca, ce * ca, ca, -se * sa, ce * sa, 0, ce, se];
   }
 
+  const LEGIBLE = 5; /* pixels a mm below which numbers would run into one another */
+
   /* Numbers on the front face, there while it is turned to the eye. */
   function numbering(box, labels) {
     const spans = labels.map(([text]) => {
@@ -240,7 +296,7 @@
       return span;
     });
     return (turn, centre, scale, shift, width, height) => {
-      box.hidden = turn[8] < 0.15;
+      box.hidden = turn[8] < 0.15 || (scale[0] * width) / 2 < LEGIBLE;
       labels.forEach(([, ...at], k) => {
         const p = at.map((value, i) => value - centre[i]);
         const x = (turn[0] * p[0] + turn[3] * p[1] + turn[6] * p[2]) * scale[0] + shift[0];
@@ -252,18 +308,18 @@
   }
 
   function start(gl, canvas, mesh, scale, tip, number) {
-    const built = program(gl);
+    const built = program(gl, VERTEX, FRAGMENT);
     const { centre, radius } = bounds(mesh.positions);
     const uniform = (name) => gl.getUniformLocation(built, name);
     const places = Object.fromEntries(
       ["turn", "centre", "scale", "shift", "coloured", "reading"].map((name) => [name, uniform(name)]));
-    const view = { ...VIEWS.isometric, zoom: 1, x: 0, y: 0, coloured: true };
-    let waiting = false;
+    const view = { ...VIEWS.isometric, zoom: 1, x: 0, y: 0, coloured: true, beside: false };
+    let waiting = false, reach = radius, aside = [0, 0, 0];
 
-    upload(gl, mesh, scale.palette);
+    const array = upload(gl, mesh, scale.palette);
+    const beside = lines(gl, centre);
     gl.useProgram(built);
     gl.enable(gl.DEPTH_TEST);
-    gl.uniform3fv(places.centre, centre);
 
     const probe = gl.createFramebuffer();
     const texel = gl.createRenderbuffer(), texelDepth = gl.createRenderbuffer();
@@ -277,19 +333,29 @@
     }
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
 
-    const perMm = () => (0.92 * view.zoom * Math.min(canvas.width, canvas.height)) / (2 * radius);
+    /* with the tool beside the part there is room for both, but the part stays to be seen */
+    const fitted = () => (view.beside ? Math.min(0.5 * (radius + reach), 2.6 * radius) : radius);
+    const perMm = () => (0.92 * view.zoom * Math.min(canvas.width, canvas.height)) / (2 * fitted());
 
     function render(reading) {
       const k = perMm(), turn = turnMatrix(view), zoom = [(2 * k) / canvas.width, (2 * k) / canvas.height];
+      /* what lies between part and tool stands in the middle */
+      const across = [0, 1].map((i) => turn[i] * aside[0] + turn[3 + i] * aside[1] + turn[6 + i] * aside[2]);
+      const shift = [view.x, view.y].map((by, i) => (view.beside ? by - across[i] * zoom[i] : by));
+      const deep = 0.99 / (view.beside ? Math.max(radius, reach) : radius);
+      gl.useProgram(built);
+      gl.bindVertexArray(array);
+      gl.uniform3fv(places.centre, centre);
       gl.uniformMatrix3fv(places.turn, false, turn);
-      gl.uniform3f(places.scale, ...zoom, 0.99 / radius);
-      gl.uniform2f(places.shift, view.x, view.y);
+      gl.uniform3f(places.scale, ...zoom, deep);
+      gl.uniform2fv(places.shift, shift);
       gl.uniform1i(places.coloured, view.coloured ? 1 : 0);
       gl.uniform1i(places.reading, reading ? 1 : 0);
       gl.clearColor(0, 0, 0, 0);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.drawElements(gl.TRIANGLES, mesh.triangles.length, gl.UNSIGNED_INT, 0);
-      if (!reading) number(turn, centre, zoom, [view.x, view.y], canvas.clientWidth, canvas.clientHeight);
+      if (view.beside && !reading) beside.draw(turn, [...zoom, deep], shift);
+      if (!reading) number(turn, centre, zoom, shift, canvas.clientWidth, canvas.clientHeight);
     }
 
     function draw() {
@@ -336,7 +402,23 @@
     new ResizeObserver(redraw).observe(canvas);
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     redraw();
-    return { view, redraw };
+
+    /* Strips of points beside the part; how far out they reach decides the room they get. */
+    function put(strips) {
+      beside.set(strips);
+      reach = radius;
+      aside = [0, 0, 0];
+      const at = strips.at(-1)?.points.at(-1);
+      if (at) {
+        const off = at.map((x, i) => x - centre[i]), far = Math.hypot(...off) || 1;
+        aside = off.map((x) => (x / far) * Math.min(0.5 * far, 1.6 * radius));
+      }
+      for (const { points } of strips) {
+        for (const p of points) reach = Math.max(reach, Math.hypot(p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]));
+      }
+      redraw();
+    }
+    return { view, redraw, put };
   }
 
   /* ---------- mouse, fingers, keys ---------- */
@@ -420,7 +502,28 @@
 
   /* ---------- the page ---------- */
 
-  function connect(box, { view, redraw }) {
+  /* Circles about the tool at both its ends, and its way; null in the way is a gap. */
+  function toolStrips({ path, axis, radius, half }) {
+    const way = [[]];
+    for (const point of path) point ? way[way.length - 1].push(point) : way.push([]);
+    const strips = way.map((points) => ({ points, ink: [0.11, 0.53, 0.3, 1] }));
+    const at = path[path.length - 1];
+    if (!at || !radius) return strips;
+    const u = Math.abs(axis[2]) < 0.9 ? [axis[1], -axis[0], 0] : [0, axis[2], -axis[1]];
+    const size = Math.hypot(...u);
+    const e = u.map((x) => x / size);
+    const f = [axis[1] * e[2] - axis[2] * e[1], axis[2] * e[0] - axis[0] * e[2], axis[0] * e[1] - axis[1] * e[0]];
+    const circle = (along) => Array.from({ length: 73 }, (_, k) => {
+      const c = Math.cos((k * Math.PI) / 36) * radius, s = Math.sin((k * Math.PI) / 36) * radius;
+      return at.map((x, i) => x + axis[i] * along + e[i] * c + f[i] * s);
+    });
+    const ends = half ? [circle(-half), circle(half)] : [circle(0)];
+    for (const points of ends) strips.push({ points, ink: [0.35, 0.42, 0.5, 1] });
+    if (half) for (let k = 0; k < 72; k += 9) strips.push({ points: [ends[0][k], ends[1][k]], ink: [0.35, 0.42, 0.5, 0.6] });
+    return strips;
+  }
+
+  function connect(box, canvas, { view, redraw, put }) {
     for (const button of box.querySelectorAll("[data-view]")) {
       button.addEventListener("click", () => {
         Object.assign(view, VIEWS[button.dataset.view], { zoom: 1, x: 0, y: 0 });
@@ -437,6 +540,15 @@
       Object.assign(view, { azimuth: detail.direction, elevation: 25, x: 0, y: 0 });
       redraw();
     });
+    document.addEventListener("hobtwin:block", ({ detail }) => put(detail.path ? toolStrips(detail) : []));
+    const stand = () => {
+      view.beside = canvas.closest(".process") !== null;
+      redraw();
+    };
+    document.addEventListener("hobtwin:tab", stand);
+    stand();
+    /* what was chosen before the part was there is said again */
+    document.dispatchEvent(new CustomEvent("hobtwin:part"));
   }
 
   /* The stage stands on the page that is shown, where that has a place for it. */
@@ -456,7 +568,7 @@
     const paletteBytes = Uint8Array.from(atob(header.palette), (letter) => letter.charCodeAt(0));
     const number = numbering(stage.querySelector(".numbers"), header.labels);
     const scale = { palette: paletteBytes, limitUm: header.limitUm };
-    connect(box, start(gl, canvas, mesh, scale, stage.querySelector(".tip"), number));
+    connect(box, canvas, start(gl, canvas, mesh, scale, stage.querySelector(".tip"), number));
     box.classList.add("ready");
   }
 
