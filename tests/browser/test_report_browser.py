@@ -278,9 +278,10 @@ def test_prints_on_a4(open_page, sample, case, before, verdict):
         assert title in text
     assert verdict in words[0]
     if case == "gear":
-        symbols = {
-            "Profile and helix": ("Left flank", "Right flank", "500:1", "22 µm"),
-            "Pitch and runout": ("cumulative pitch",),
-        }
-        for title, found in symbols.items():
-            assert all(symbol in words[before + own.index(title)] for symbol in found)
+        gear = sample.gear_inspection().gear
+        flanks, pitch = (
+            words[before + own.index(title)] for title in ("Profile and helix", "Pitch and runout")
+        )
+        for side in (gear.left, gear.right):
+            assert f"{side.profile_form_um:.1f}" in flanks
+            assert f"{side.cumulative_pitch_um:.1f} µm" in pitch

@@ -71,7 +71,7 @@ def block_facts(recording: Recording) -> tuple[BlockFacts, ...]:
     order = np.argsort(line, kind="stable")
     edges = np.flatnonzero(np.diff(line[order], prepend=-1, append=len(number)))
     for runs in np.split(order, edges[1:-1]):
-        a, b = runs[0], runs[-1]
+        a, b = int(runs[0]), int(runs[-1])
         file, text_line = places[recording.block[first[a]]]
         spans = np.stack([recording.time_s[before[runs]], recording.time_s[last[runs]]], axis=-1)
         found.append(
@@ -88,7 +88,7 @@ def block_facts(recording: Recording) -> tuple[BlockFacts, ...]:
                 synced=bool(synced[runs].any()),
                 tool=int(recording.tool[last[b]]),
                 path_mm=_path(ways[runs[:MOST_RUNS]], straight[runs[:MOST_RUNS]]),
-                axis=_at(recording, recording.tool_axis, last[b]),
+                axis=_at(recording, recording.tool_axis, int(last[b])),
             )
         )
     return tuple(sorted(found, key=lambda facts: facts.runs[0]))
