@@ -90,6 +90,14 @@ def test_a_polygon_scene_cuts_the_faces_of_its_ratio(tmp_path, scene, sides, fla
     assert found["twist_deg_per_mm"] == pytest.approx(0.0, abs=1e-3)
 
 
+def test_a_hob_shifted_without_its_turn_of_the_work_cuts_another_helix(tmp_path):
+    """6 mm of Y over 56 mm of Z: tan β' = tan β - 6/56, so that the right-hand helix is 14.4°, not 20°."""
+    code, found, _ = run(tmp_path, "inclined_shift_uncompensated", "--ideal", "--cell-mm", "0.4")
+    assert code == 1
+    assert found["verdict"] == "out"
+    assert any("instead of 20°" in finding for finding in found["findings"])
+
+
 def test_the_ratio_of_the_manual_is_named_as_the_cause(tmp_path):
     """P2 Q6 with two inserts: concave faces, a caliper reads 17 + 2 bow."""
     code, found, out = run(tmp_path, "hexagon_af17_original", "--ideal", "--cell-mm", "0.2")
