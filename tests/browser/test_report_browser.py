@@ -10,6 +10,7 @@ import pytest
 from twin.inspection.result import Inspection
 from twin.report import Message, Severity
 from twin.report.sections import SECTIONS
+from twin.report.sections.verdict import PICTURE_SIZE
 
 TABS = ("overview", "part", "sheet", "process", "origin")
 READ_PIXELS = """async (view) => {
@@ -135,7 +136,7 @@ def test_without_webgl_a_still_picture_stands_in(open_page, sample):
     opened.tab("part")
     opened.page.wait_for_selector(".viewer.failed")
     assert opened.page.is_visible(".stage .fallback")
-    assert opened.page.evaluate("document.querySelector('.fallback').naturalWidth") == 680
+    assert opened.page.evaluate("document.querySelector('.fallback').naturalWidth") == PICTURE_SIZE[0]
     assert "this browser has no WebGL 2" in opened.page.inner_text(".reason")
 
 

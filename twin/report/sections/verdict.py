@@ -10,7 +10,7 @@ from twin.report.labels import Label, labels
 from twin.report.pictures import END, ISOMETRIC, Tint, place, render_part
 from twin.report.sections.section import Section, Tab
 
-PICTURE_SIZE = (680, 540)
+PICTURE_SIZE = (560, 446)
 """[pixels]"""
 
 
