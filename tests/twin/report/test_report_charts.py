@@ -284,3 +284,14 @@ def test_numbers_in_words(value, text):
 
 def test_units_stand_behind_a_space_but_degrees():
     assert (number(-1.5, 2, "µm"), number(20, 1, "°"), plain(0.5, "mm")) == ("−1.50 µm", "20.0°", "0.5 mm")
+
+
+def test_what_stands_still_is_drawn_as_a_level_line(sample):
+    """Rounding of a spindle at rest is no curve: it is not drawn larger than a thousandth."""
+    recording = sample.recording(500)
+    noise = 1e-9 * np.sin(np.arange(500.0))
+    still = replace(recording, setpoint=np.zeros((500, 4)), actual=np.repeat(noise[:, None], 4, axis=1))
+    svg = motion_chart(still, frozenset("YC")).svg
+    for axis in "XZYC":
+        drawn, _ = paths(svg, f"motion-{axis}-error")
+        assert np.ptp(drawn[:, 1]) < 0.1

@@ -20,6 +20,8 @@ BAND_TOP, BAND = 6.0, 3.6
 """of the strip that shows the gear box engaged [mm]"""
 TALL, GAP = 17.0, 4.5
 """of each plot, and below it [mm]"""
+FLAT = 1e-3
+"""[mm, rpm, µm, ″] that a curve must rise, to be drawn larger than it is"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,22 +72,22 @@ def motion_chart(
         turns = letter in rotary
         curves = _values(recording, k, turns)
         drawn = plot(lefts[0], k, _room([value for _, value, _ in curves]))
-        drawn.grid(most=4)
+        drawn.grid(most=5)
         for t, value, name in curves:
             drawn.curve(t, value, name, id=f"{letter}-{name}")
-        drawn.y_axis(f"{letter}  [{'rpm' if turns else 'mm'}]", most=4, room=GUTTER - 2.2)
+        drawn.y_axis(f"{letter}  [{'rpm' if turns else 'mm'}]", most=5, room=GUTTER - 2.2)
         t, error, unit = _error(recording, k, turns)
         drawn = plot(lefts[1], k, _room([error, np.zeros(1)]))
-        drawn.grid(most=4)
+        drawn.grid(most=5)
         drawn.level(0.0, "zero")
         drawn.curve(t, error, "error", id=f"{letter}-error")
-        drawn.y_axis(f"{letter}  [{unit}]", most=4, room=GUTTER - 2.2)
+        drawn.y_axis(f"{letter}  [{unit}]", most=5, room=GUTTER - 2.2)
     if sync_error_arcsec is not None:
         t, error = envelope(time, sync_error_arcsec, 2 * COLUMNS)
         drawn = plot(GUTTER, rows - 1, _room([error, np.zeros(1)]), WIDTH - GUTTER - 1.5)
         drawn.level(0.0, "zero")
         drawn.curve(t, error, "error", id="sync-error")
-        drawn.y_axis("sync  [″]", most=4, room=GUTTER - 2.2)
+        drawn.y_axis("sync  [″]", most=5, room=GUTTER - 2.2)
         drawn.x_axis("time [s]")
     else:
         for last in panels[-2:]:
@@ -158,10 +160,10 @@ def _error(recording: Recording, k: int, turns: bool) -> tuple[Floats, Floats, s
 
 
 def _room(values: list[Floats]) -> tuple[float, float]:
-    """Range that holds all values (finite), with a margin; about ±1 where all are alike."""
+    """Range that holds all values (finite), with a margin; about ±1 where they hardly differ."""
     every = np.concatenate(values)
     low, high = (float(every.min()), float(every.max())) if every.size else (0.0, 0.0)
-    margin = 0.08 * (high - low) or 1.0
+    margin = 0.08 * (high - low) if high - low > FLAT else 1.0
     return low - margin, high + margin
 
 
