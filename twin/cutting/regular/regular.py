@@ -1,0 +1,83 @@
+"""A complete regular gear, cut the quick way, or handed over."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.blank import Blank
+from twin.cutting.dual import Surface
+from twin.cutting.engagement import StockCylinder
+from twin.cutting.motion import CutterMotion
+from twin.cutting.regular.chart import Frame, chart_along
+from twin.cutting.regular.indexing import find_indexing
+from twin.cutting.regular.inside import prove_inside
+from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.regular.section import bend, section, spaced
+from twin.cutting.regular.skin import skin
+from twin.cutting.regular.tiles import Tiling, search
+from twin.cutting.regular.tubes import tubes
+from twin.cutting.sweep import Sweep
+
+ROOT_SAG = 1.2e-3
+"""[mm] by which a cell across the gap may sag where the root bends most, at a tolerance of 1 µm"""
+MARK_SAG = 0.15e-3
+"""[mm] by which a cell along the gap may sag in the feed marks, at a tolerance of 1 µm"""
+RIM = 1.5
+"""Cells by which the charts reach out of the blank."""
+FINEST = 4e-3
+"""Share of the tooth height below which no cell is chosen."""
+LIMIT = 2_500_000
+"""Cells beyond which a cut is left to the general way and its memory estimate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Regular:
+    """The surface of a complete regular cut."""
+
+    surface: Surface
+    cell_mm: tuple[float, float]
+    """across and along the gaps"""
+    pairs: int
+    """pairs of block and bite evaluated in the search"""
+
+
+def regular_cut(
+    blank: Blank,
+    tools: tuple[tuple[Cutter, CutterMotion], ...],
+    sweep: Sweep,
+    *,
+    tolerance_um: float = 1.0,
+    cell_mm: float | None = None,
+) -> Regular:
+    """What the tools remove, if that is proved to be equal gaps and nothing else.
+
+    The last of the tools indexes the gaps. `cell_mm` is the cell across the gaps (twice that along them); left
+    out, it follows from the tolerance. Raises IrregularError, with what is missing, for any other cut.
+    """
+    cutter, motion = tools[-1]
+    stock = StockCylinder.around(motion.mount, blank.radius, blank.z_range)
+    indexing = find_indexing(cutter, motion, stock.radius)
+    height = stock.radius - indexing.root
+    trial = Frame(indexing=indexing, stock=stock.radius, margin=0.04 * height)
+    found = section(sweep, trial, motion.mount, 0.5 * (stock.z_low + stock.z_high))
+    across, along = cell_mm, 2.0 * (cell_mm or 0.0)
+    if across is None:
+        across = max(math.sqrt(8.0 * ROOT_SAG * tolerance_um / bend(found)), FINEST * height)
+        along = math.sqrt(8.0 * MARK_SAG * tolerance_um * cutter.radius)
+    thick = across
+    tiling = Tiling.of(across, along, thick, cutter.radius)
+    frame = Frame(indexing=indexing, stock=stock.radius, margin=RIM * across)
+    surface = spaced(found, frame.outside, across, tiling.across)
+    length = stock.z_high - stock.z_low + 2.0 * along
+    count = tiling.along * math.ceil(length / (along * tiling.along))
+    if indexing.teeth * count * len(surface) > LIMIT:
+        raise IrregularError("too many cells")
+    middle = 0.5 * (stock.z_low + stock.z_high)
+    z = middle + along * (np.arange(count + 1) - 0.5 * count)
+    chart = chart_along(frame, motion.mount, surface, z)
+    patch, held = search(sweep, chart, tiling, thick)
+    prove_inside(sweep, chart, patch, held.tangents, thick)
+    made = skin(sweep, chart, patch, held.tangents, thick)
+    return Regular(tubes(chart, made), (across, along), held.pairs)

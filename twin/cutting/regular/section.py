@@ -1,0 +1,98 @@
+"""The section of one gap, roughly: where the chart expects the cut surface."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from twin.cutting.motion import RigidTransform
+from twin.cutting.refine import first_cull
+from twin.cutting.regular.chart import Chart, Frame
+from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.sweep import Sweep
+
+Floats = NDArray[np.float64]
+
+FLANK, ROOT = 16, 25
+"""Trial rays of a flank, and into the root."""
+HALVINGS = 14
+THIN = 1e-3
+"""Height of the section [mm]."""
+
+
+def section(sweep: Sweep, frame: Frame, mount: RigidTransform, z: float) -> Floats:
+    """The cut surface (n, 2) in a gap at z, from the one tip to the other. Raises IrregularError for none."""
+    start, along = frame.trial(FLANK, ROOT)
+    reach = frame.reach(start, along)
+    trial = Chart(
+        frame=frame,
+        mount=mount,
+        surface=start,
+        along=along,
+        inner=np.zeros(len(start)),
+        outer=reach,
+        z=np.array([z - THIN, z, z + THIN]),
+    )
+    n = len(start)
+    rays = np.arange(n)
+    # a box about every ray holds half of the way to its neighbours
+    beside = np.stack([np.maximum(rays - 1, 0), rays, np.minimum(rays + 1, n - 1)])
+    ends = np.stack([np.zeros(n), reach])
+    corners = np.stack(
+        [trial.at(np.array(0), i, np.array(k), tau[i])[0] for i in beside for k in (0, 2) for tau in ends], axis=1
+    )
+    middle = 0.5 * (corners.min(axis=1) + corners.max(axis=1))
+    done = first_cull(sweep, middle, corners)
+    crossed = np.zeros(n, dtype=bool)
+    crossed[done.alive] = True
+    block = np.cumsum(crossed) - 1
+    low, high = np.zeros(n), reach.copy()
+    for _ in range(HALVINGS):
+        tau = 0.5 * (low + high)
+        inside = sweep.deepest(trial.at(0, rays, 1, tau)[0], block, done.tangents, sign=True).depth > 0
+        low, high = np.where(inside, tau, low), np.where(inside, high, tau)
+    crossed &= (low > 0) & (high < reach)
+    # near the tips the land between the hob's teeth may cut; what counts is the surface up to `outside`
+    found = start + (0.5 * (low + high))[:, None] * along
+    upper = found[: n // 2 + 1][np.flatnonzero(~crossed[: n // 2]).max(initial=-1) + 1 :]
+    lower = found[n // 2 + 1 :][: np.flatnonzero(~np.append(crossed[n // 2 + 1 :], False)).min()]
+    if not crossed[n // 2] or min(len(upper), len(lower)) < ROOT // 2:
+        raise IrregularError("no gap where the rolling of tool and work puts one")
+    return np.vstack([upper, lower])
+
+
+def spaced(surface: Floats, outside: float, step: float, multiple: int) -> Floats:
+    """A section (n, 2) again, at equal steps of about `step` [mm], from `outside` to `outside` radius.
+
+    The number of steps is a multiple of `multiple`. Raises IrregularError where the section does not reach
+    that far out.
+    """
+    radius = np.hypot(*surface.T)
+    lowest = int(radius.argmin())
+    if min(radius[0], radius[-1]) < outside:
+        raise IrregularError("the gaps are not open at the blank's outside")
+    length, curve = _curve(surface)
+    first = int(np.flatnonzero(radius[:lowest] >= outside).max())
+    last = lowest + int(np.flatnonzero(radius[lowest:] >= outside).min())
+    ends = [
+        brentq(lambda at: float(np.hypot(*curve(at))) - outside, length[low], length[low + 1])
+        for low in (first, last - 1)
+    ]
+    count = multiple * math.ceil((ends[1] - ends[0]) / (step * multiple))
+    return np.asarray(curve(np.linspace(ends[0], ends[1], count + 1)), dtype=np.float64)
+
+
+def bend(surface: Floats) -> float:
+    """Largest curvature of a section (n, 2) [1/mm]."""
+    length, curve = _curve(surface)
+    at = np.linspace(length[0], length[-1], 8 * len(surface))
+    (dx, dy), (ddx, ddy) = curve(at, 1).T, curve(at, 2).T
+    return float(np.abs((dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3).max())
+
+
+def _curve(surface: Floats) -> tuple[Floats, CubicSpline]:
+    """Lengths (n,) along a section, and the section as a function of it."""
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(surface, axis=0).T))])
+    return length, CubicSpline(length, surface)

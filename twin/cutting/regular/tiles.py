@@ -1,0 +1,329 @@
+"""Proof that a chart holds all of the cut, tile by tile, and the bites that can matter in each.
+
+The *shell* is what lies within `thick` of the expected surface. A tile is a patch of it with the rays through
+it. It is proved that
+- what lies before the shell on the rays is removed: one bite takes all of a block there (`inside.py`);
+- no bite touches what lies behind it: where a bite's tangent falls along the rays, so does its bound;
+- in the shell only the tile's bites can be the deepest, by the culling of `refine`.
+Charts cover the whole ring from below the root to the outside, so nothing else is removed.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutting.local import Tangents, can_matter, joined
+from twin.cutting.meeting import Meeting
+from twin.cutting.pairs import Candidates, batches, in_parallel, leaders
+from twin.cutting.regular.chart import Chart
+from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.sweep import Sweep
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+LARGEST = 16
+"""Cells of a tile across or along the gap at most."""
+BENT = 0.5
+"""What the map to the rake plane bends on a tile, at most, as a share of the shell's thickness and a tile's
+size: edge² / (tip radius · thickness)."""
+TILES = {4.0: 3.0, 2.0: 1.5, 1.0: 1.0, 0.5: 1.0}
+"""Tiles along the edge of the blocks, from coarse to fine -> how much thicker the shell is taken there: in
+large blocks the bounds are wider."""
+SAMPLED = 9
+"""Rays of a block at which the way behind it is looked at."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tiling:
+    """Cells of a tile, even numbers."""
+
+    across: int
+    along: int
+
+    @classmethod
+    def of(cls, across: float, along: float, thick: float, tip: float) -> "Tiling":
+        """For cells of this size [mm], a shell of this thickness and a tool of this tip radius [mm]."""
+        edge = math.sqrt(BENT * tip * thick)
+        numbers = (min(max(2 * round(edge / (2.0 * cell)), 2), LARGEST) for cell in (across, along))
+        return cls(**dict(zip(("across", "along"), numbers, strict=True)))
+
+    def times(self, tiles: float) -> tuple[int, int]:
+        """Cells of a block of some tiles."""
+        return int(tiles * self.across), int(tiles * self.along)
+
+
+@dataclass(frozen=True, slots=True)
+class Patches:
+    """Patches of the shell: rows and columns of nodes, both ends included."""
+
+    gap: Ints
+    """(n,)"""
+    i: Ints
+    """(n, 2) first and last ray"""
+    k: Ints
+    """(n, 2) first and last section"""
+
+    def of(self, rows: Ints) -> "Patches":
+        """Some of them."""
+        return Patches(self.gap[rows], self.i[rows], self.k[rows])
+
+
+@dataclass(frozen=True, slots=True)
+class Blocks:
+    """Boxes around patches, and the rays behind them."""
+
+    middle: Floats
+    """(n, 3)"""
+    corners: Floats
+    """(n, 8, 3)"""
+    radius: Floats
+    """(n,) of the corners about the middle"""
+    face: Floats
+    """(c, 3, n) from the middle to points of the shell's back"""
+    behind: Floats
+    """(c, 3, n) ways from there to the ends of the rays"""
+    slack: Floats
+    """(2, n) by which points between those, and ends of ways, may stand off their chords [mm]"""
+    depth: Floats
+    """(n,) longest of the ways [mm]"""
+
+
+def patches(chart: Chart, size: tuple[int, int]) -> Patches:
+    """Patches of `size` cells across and along the gaps, fewer at the ends."""
+    nu, nz = chart.cells
+    first = [np.arange(0, n, cells) for n, cells in zip((nu, nz), size, strict=True)]
+    gap, i, k = (v.reshape(-1) for v in np.meshgrid(np.arange(chart.gaps), *first, indexing="ij"))
+    return Patches(
+        gap,
+        np.stack([i, np.minimum(i + size[0], nu)], axis=1),
+        np.stack([k, np.minimum(k + size[1], nz)], axis=1),
+    )
+
+
+def quarters(patch: Patches, size: tuple[int, int]) -> tuple[Patches, Ints]:
+    """The patches halved into such of at most `size` cells, and the parent of each."""
+    parts, parents = [], []
+    rows = np.arange(len(patch.gap))
+    for a in (0, 1):
+        for b in (0, 1):
+            i0 = patch.i[:, 0] + a * size[0]
+            k0 = patch.k[:, 0] + b * size[1]
+            i1 = np.minimum(i0 + size[0], patch.i[:, 1])
+            k1 = np.minimum(k0 + size[1], patch.k[:, 1])
+            some = np.flatnonzero((i0 < patch.i[:, 1]) & (k0 < patch.k[:, 1]))
+            parts.append(Patches(patch.gap[some], np.stack([i0, i1], 1)[some], np.stack([k0, k1], 1)[some]))
+            parents.append(rows[some])
+    whole = Patches(*(np.concatenate([getattr(p, name) for p in parts]) for name in Patches.__slots__))
+    parent = np.concatenate(parents)
+    order = np.argsort(parent, kind="stable")
+    return whole.of(order), parent[order]
+
+
+def blocks(chart: Chart, patch: Patches, thick: float) -> Blocks:
+    """Boxes that hold the shell on patches."""
+    cells = int((patch.i[:, 1] - patch.i[:, 0]).max())
+    i = np.minimum(patch.i[:, :1] + np.arange(cells + 1), patch.i[:, 1:])
+    shape = (len(patch.gap), 2, cells + 1)
+    gap, i, k = patch.gap[:, None, None], i[:, None, :], patch.k[:, :, None]
+    point, along = chart.at(np.broadcast_to(gap, shape), np.broadcast_to(i, shape), np.broadcast_to(k, shape), np.zeros(1))
+    # axes along the gap, across it, and into the tooth
+    up = (point[:, 1] - point[:, 0]).mean(axis=1)
+    up /= np.linalg.norm(up, axis=1, keepdims=True)
+    across = (point[:, :, -1] - point[:, :, 0]).mean(axis=1)
+    across -= np.einsum("nx,nx->n", across, up)[:, None] * up
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    axes = np.stack([up, across, np.cross(up, across)], axis=1)
+    both = np.stack([point - thick * along, point + thick * along], axis=1).reshape(len(point), -1, 3)
+    local = np.einsum("nax,npx->npa", axes, both)
+    # between its ends a twisted gap leaves the chord
+    reach = np.hypot(both[..., 0], both[..., 1]).max()
+    turn = abs(chart.frame.indexing.twist) * (chart.z[patch.k[:, 1]] - chart.z[patch.k[:, 0]])
+    bow = reach * turn**2 / 8.0
+    low, high = local.min(axis=1) - bow[:, None], local.max(axis=1) + bow[:, None]
+    half = 0.5 * (high - low)
+    middle = np.einsum("nax,na->nx", axes, 0.5 * (low + high))
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+    corners = middle[:, None] + np.einsum("na,ca,nax->ncx", half, signs, axes)
+    at = np.rint(np.linspace(0, cells, min(SAMPLED, cells + 1))).astype(int)
+    back = point + thick * along
+    way = along * (chart.outer[i] - thick)[..., None]
+    slack = np.stack([_off_chords(back, at), _off_chords(back + way, at)]) + bow
+    face = back[:, :, at].reshape(len(point), -1, 3) - middle[:, None]
+    behind = way[:, :, at].reshape(len(point), -1, 3)
+    return Blocks(
+        middle,
+        corners,
+        np.linalg.norm(half, axis=1),
+        np.ascontiguousarray(face.transpose(1, 2, 0)),
+        np.ascontiguousarray(behind.transpose(1, 2, 0)),
+        slack,
+        (chart.outer[i] - thick).max(axis=(1, 2)),
+    )
+
+
+def _off_chords(values: Floats, at: Ints) -> Floats:
+    """(n,) how far values (n, 2, c, 3) stand off the chords between the columns `at`, at most."""
+    n = values.shape[2]
+    place = np.arange(n)
+    low = np.clip(np.searchsorted(at, place, side="right") - 1, 0, len(at) - 2)
+    part = ((place - at[low]) / (at[low + 1] - at[low]))[:, None]
+    chord = (1.0 - part) * values[:, :, at[low]] + part * values[:, :, at[low + 1]]
+    return np.linalg.norm(values - chord, axis=3).max(axis=(1, 2))
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """What is known of the bites of some blocks."""
+
+    tangents: Tangents
+    safe: Bools
+    """(m,) which bites are proved not to touch what lies behind the shell"""
+    pairs: int
+    """pairs of block and bite that were evaluated"""
+
+
+def search(sweep: Sweep, chart: Chart, tiling: Tiling, thick: float) -> tuple[Patches, Held]:
+    """The halves of tiles, and for each the bites that can be the deepest in the shell on it.
+
+    Raises IrregularError where a bite may touch what lies behind the shell, or where none reaches it.
+    """
+    tiles, *finer = TILES
+    patch = patches(chart, tiling.times(tiles))
+    block = blocks(chart, patch, TILES[tiles] * thick)
+    held = first_held(sweep, block, sweep.near(*_columns(block)))
+    pairs = held.pairs
+    for tiles in finer:
+        patch, parent = quarters(patch, tiling.times(tiles))
+        held = refined(sweep, blocks(chart, patch, TILES[tiles] * thick), parent, held)
+        pairs += held.pairs
+    if not held.safe.all():
+        raise IrregularError("something is cut outside of the gaps")
+    if (np.diff(held.tangents.lists.start) == 0).any():
+        raise IrregularError("the gaps are not cut all along")
+    return patch, Held(held.tangents, held.safe, pairs)
+
+
+def _columns(block: Blocks) -> tuple[Floats, Floats]:
+    """Middles (n, 3) and radii (n,) of balls that hold the blocks and all that lies behind them."""
+    ends = (block.face + block.behind).transpose(2, 0, 1)
+    points = np.concatenate([block.corners - block.middle[:, None], ends], axis=1)
+    middle = 0.5 * (points.min(axis=1) + points.max(axis=1))
+    radius = np.linalg.norm(points - middle[:, None], axis=2).max(axis=1) + block.slack[1]
+    return block.middle + middle, radius
+
+
+def refined(sweep: Sweep, block: Blocks, parent: Ints, held: Held) -> Held:
+    """The bites of smaller blocks, from those of their parents."""
+    above = held.tangents
+    length = np.diff(above.lists.start)[parent]
+
+    def work(part: slice) -> Held:
+        rows = np.arange(part.start, part.stop)
+        own = parent[rows]
+        pairs = above.lists.pairs(own)
+        mine = above.of(own)
+        owner = mine.lists.owner()
+        way = block.middle[rows] - mine.middle
+        height = mine.plane[0] + np.einsum("xm,mx->m", mine.plane[1:], way[owner])
+        judge = mine.lists.bites[leaders(height, mine.lists.start)[1]]
+        floors = _floors(sweep, block, rows, judge)
+        spokes = np.ascontiguousarray((block.corners[rows] - mine.middle[:, None]).transpose(1, 2, 0))
+        outside = np.linalg.norm(block.corners[rows] - mine.middle[:, None], axis=2).max(axis=1) > mine.radius
+        keep = can_matter(mine.plane, mine.over, owner, spokes, floors) | outside[owner]
+        keep |= ~held.safe[pairs]
+        return _judged(sweep, block, rows, mine.lists.where(keep), held.safe[pairs][keep], floors)
+
+    return _gathered(np.concatenate([[0], np.cumsum(length)]), work)
+
+
+def first_held(sweep: Sweep, block: Blocks, lists: Candidates) -> Held:
+    """The bites of blocks from all that come near."""
+    if (np.diff(lists.start) == 0).any():
+        raise IrregularError("the gaps are not cut all along")
+
+    def work(part: slice) -> Held:
+        rows = np.arange(part.start, part.stop)
+        own = lists.of(rows)
+        return _judged(sweep, block, rows, own, np.zeros(len(own.bites), dtype=bool), None)
+
+    return _gathered(lists.start, work)
+
+
+def _judged(
+    sweep: Sweep, block: Blocks, rows: Ints, lists: Candidates, safe: Bools, floors: Floats | None
+) -> Held:
+    """Cull by the tangents at the blocks' own middles."""
+    owner = lists.owner()
+    middle, radius = block.middle[rows], block.radius[rows]
+    meeting = sweep.evaluate(middle.take(owner, axis=0), lists.bites, gradient=True)
+    change, over = sweep.bound(meeting, lists.bites, radius[owner])
+    plane = np.vstack([meeting.depth, meeting.gradient.T])
+    if floors is None:
+        judge = lists.bites[leaders(meeting.depth, lists.start)[1]]
+        floors = _floors(sweep, block, rows, judge)
+    spokes = np.ascontiguousarray((block.corners[rows] - middle[:, None]).transpose(1, 2, 0))
+    keep = can_matter(plane, over, owner, spokes, floors)
+    keep &= meeting.depth + change > 0
+    unsure = np.flatnonzero(~safe)
+    safe = safe.copy()
+    safe[unsure] = _stays_out(sweep, block, rows, _some(meeting, unsure), lists.bites[unsure], over[unsure], owner[unsure])
+    keep |= ~safe
+    some = np.flatnonzero(keep)
+    tangents = Tangents(lists.where(keep), middle, radius, plane.take(some, axis=1), over.take(some))
+    return Held(tangents, safe[some], len(owner))
+
+
+def _some(meeting: Meeting, rows: Ints) -> Meeting:
+    return Meeting(
+        meeting.depth[rows],
+        meeting.gradient[rows],
+        meeting.s[rows],
+        meeting.rho[rows],
+        meeting.instant[rows],
+        meeting.slack[rows] if len(meeting.slack) else meeting.slack,
+    )
+
+
+def _stays_out(
+    sweep: Sweep, block: Blocks, rows: Ints, meeting: Meeting, bite: Ints, over: Floats, owner: Ints
+) -> Bools:
+    """Which bites (m,) touch nothing behind the shell on their blocks.
+
+    At y + t w, y in the shell's back and w the way behind it, a bite's depth is at most tangent(y) + t g · w +
+    what the tangent may be wrong by that far out: a convex function of t, which is below zero if it is so
+    at both ends.
+    """
+    gradient = meeting.gradient.T
+    steep = np.linalg.norm(meeting.gradient, axis=1)
+    near_slack, far_slack = (steep * slack[rows].take(owner) for slack in block.slack)
+    far = (block.radius + block.depth)[rows][owner]
+    change, beyond = sweep.bound(meeting, bite, far)
+    here = np.full(len(bite), -np.inf)
+    there = np.full(len(bite), -np.inf)
+    for face, behind in zip(block.face, block.behind, strict=True):
+        near = sum(gradient[x] * face[x, rows].take(owner) for x in range(3))
+        np.maximum(here, near, out=here)
+        near += sum(gradient[x] * behind[x, rows].take(owner) for x in range(3))
+        np.maximum(there, near, out=there)
+    level = meeting.depth
+    falls = (level + here + near_slack + over < 0) & (level + there + far_slack + beyond < 0)
+    return falls | (level + change < 0)
+
+
+def _floors(sweep: Sweep, block: Blocks, rows: Ints, judge: Ints) -> Floats:
+    return sweep.floors(block.middle[rows], block.corners[rows], judge, block.radius[rows])
+
+
+def _gathered(start: Ints, work: Callable[[slice], Held]) -> Held:
+    """`work` on slices of blocks, whose lists of pairs begin at `start`."""
+    done = in_parallel(work, batches(start))
+    return Held(
+        joined([h.tangents for h in done]),
+        np.concatenate([h.safe for h in done]),
+        sum(h.pairs for h in done),
+    )
