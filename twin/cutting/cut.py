@@ -1,4 +1,4 @@
-"""The general way: any motion, any tools, on a cylindrical grid."""
+"""Any motion, any tools: the quick way where it is proved to be right, the general way everywhere else."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,12 +10,15 @@ from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.check import Errors, check, coarse, missed
 from twin.cutting.crossings import find_crossings, leaf_cells, node_depths
-from twin.cutting.dual import Cells, contour
-from twin.cutting.engagement import StockCylinder, scraped
+from twin.cutting.dual import Cells, Surface, contour
+from twin.cutting.engagement import StockCylinder, axes_apart, scraped
 from twin.cutting.fields import tool_field
+from twin.cutting.grid import Grid
 from twin.cutting.motion import CutterMotion
 from twin.cutting.plan import CORE, plan_grid
 from twin.cutting.refine import refine
+from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.regular.regular import regular_cut
 from twin.cutting.stock import Remains, subtract
 from twin.cutting.sweep import Sweep
 
@@ -33,8 +36,8 @@ class CutResult:
     remains: Remains
     method: str
     """which mesher made it"""
-    cell_mm: tuple[float, float, float]
-    """of the grid, along r, theta, z"""
+    cell_mm: tuple[float, ...]
+    """of the grid, along r, theta, z; or across and along the gaps"""
     passes: int
     """cutting passes that came near the stock"""
     pairs: int
@@ -53,6 +56,7 @@ def cut(
     tools: tuple[tuple[Cutter, CutterMotion], ...],
     *,
     cell_mm: float | None = None,
+    tolerance_um: float = 1.0,
     progress: Progress = lambda _stage, _share: None,
 ) -> CutResult:
     """Cut the blank by everything the tools sweep.
@@ -70,23 +74,18 @@ def cut(
     if sweep.passes == 0:
         return _uncut(blank, (*notes, "no edge ever swung past the blank: nothing was cut"))
     progress("searching the cut surface", 0.1)
-    leaves = refine(sweep, grid)
-    progress("crossings", 0.5)
-    depth = node_depths(sweep, grid, leaves)
-    surface = None
-    errors = facets = Errors(np.zeros((0, 3)), np.zeros(0))
-    if (depth > 0).any():
-        if (depth[1] > 0).any() and max(closest, 0.5 * blank.bore_mm) <= CORE * blank.radius:
-            notes.append(f"the cut reaches the work axis; a core of {grid.r[0] + grid.r[1]:.2f} mm is kept")
-        crossings = find_crossings(sweep, grid, leaves, depth)
-        cell_low, case, leaf = leaf_cells(grid, leaves, depth)
-        progress("meshing", 0.7)
-        surface = contour(sweep, grid, Cells(cell_low, case, leaf, leaves.tangents), crossings)
+    try:
+        regular = regular_cut(blank, tools, sweep, tolerance_um=tolerance_um, cell_mm=cell_mm)
+        method, cells, pairs = "regular (charts of equal gaps)", regular.cell_mm, regular.pairs
+        surface: Surface | None = regular.surface
         progress("checking", 0.8)
-        errors, facets = check(sweep, surface, blank)
-        notes += coarse(errors, facets) + missed(sweep, grid, leaves, surface, depth=depth, blank=blank)
-    else:
-        notes.append("the tool passed the blank without touching it: nothing was cut")
+        errors, facets = check(sweep, regular.surface, blank)
+        notes += coarse(errors, facets)
+    except IrregularError as why:
+        made = _general(blank, sweep, grid, closest, progress)
+        method, cells, pairs = f"general (cylindrical grid), for {why}", grid.cell_mm, made.pairs
+        surface, errors, facets = made.surface, made.errors, made.facets
+        notes += made.notes
     progress("cutting the blank", 0.9)
     remains = subtract(blank, surface)
     severed = [volume for volume in remains.loose_volumes_mm3 if volume > CRUMB]
@@ -97,15 +96,49 @@ def cut(
     progress("done", 1.0)
     return CutResult(
         remains=remains,
-        method="general (cylindrical grid, dual contouring)",
-        cell_mm=grid.cell_mm,
+        method=method,
+        cell_mm=cells,
         passes=sweep.passes,
-        pairs=leaves.pairs,
+        pairs=pairs,
         checked=len(errors.distance),
         largest_error_um=errors.largest_um,
         facet_error_um=facets.largest_um,
         notes=tuple(notes),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """The surface by the general way."""
+
+    surface: Surface | None
+    errors: Errors
+    facets: Errors
+    pairs: int
+    notes: list[str]
+
+
+def _general(blank: Blank, sweep: Sweep, grid: Grid, closest: float, progress: Progress) -> _Made:
+    """On a cylindrical grid, whatever the tools do."""
+    leaves = refine(sweep, grid)
+    progress("crossings", 0.5)
+    depth = node_depths(sweep, grid, leaves)
+    none = Errors(np.zeros((0, 3)), np.zeros(0))
+    if not (depth > 0).any():
+        return _Made(
+            None, none, none, leaves.pairs, ["the tool passed the blank without touching it: nothing was cut"]
+        )
+    notes = []
+    if (depth[1] > 0).any() and max(closest, 0.5 * blank.bore_mm) <= CORE * blank.radius:
+        notes.append(f"the cut reaches the work axis; a core of {grid.r[0] + grid.r[1]:.2f} mm is kept")
+    crossings = find_crossings(sweep, grid, leaves, depth)
+    cell_low, case, leaf = leaf_cells(grid, leaves, depth)
+    progress("meshing", 0.7)
+    surface = contour(sweep, grid, Cells(cell_low, case, leaf, leaves.tangents), crossings)
+    progress("checking", 0.8)
+    errors, facets = check(sweep, surface, blank)
+    notes += coarse(errors, facets) + missed(sweep, grid, leaves, surface, depth=depth, blank=blank)
+    return _Made(surface, errors, facets, leaves.pairs, notes)
 
 
 def _rubbing(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> list[str]:
@@ -136,12 +169,5 @@ def _uncut(blank: Blank, notes: tuple[str, ...]) -> CutResult:
 
 def _closest(cutter: Cutter, motion: CutterMotion) -> float:
     """Smallest radius of the work that the tool's tips may reach [mm]."""
-    axis = motion.basis[2]
-    across = np.cross(axis, [0.0, 0.0, 1.0])
-    length = np.linalg.norm(across)
-    if length < 1e-6:
-        distance = np.hypot(motion.centre[:, 0], motion.centre[:, 1])
-    else:
-        distance = np.abs(motion.centre @ (across / length))
     offset = float(np.linalg.norm(motion.mount.translation[:2]))
-    return max(float(distance.min()) - cutter.radius - offset, 0.0)
+    return max(float(axes_apart(motion).min()) - cutter.radius - offset, 0.0)

@@ -19,6 +19,8 @@ RUB = 5e-3
 """How far the stock may creep past a standing edge [mm] without a word."""
 TURNED = 0.5
 """Tool turn [rad] in one slow stretch that is no starting or stopping any more."""
+PARALLEL = 1e-6
+"""Sine of the angle of two axes below which they are parallel."""
 DIRECTIONS = 32
 
 
@@ -62,6 +64,15 @@ class StockCylinder:
 def inner_radius(cutter: Cutter) -> float:
     """Innermost radius at which edges are taken to cut [mm]: there they cross their rake plane slowest."""
     return max(cutter.profile.root, 0.5 * cutter.radius)
+
+
+def axes_apart(motion: CutterMotion) -> Floats:
+    """Distance (n,) of the tool's axis from the work spindle's [mm]."""
+    across = np.cross(motion.basis[2], [0.0, 0.0, 1.0])
+    length = np.linalg.norm(across)
+    if length < PARALLEL:
+        return np.hypot(motion.centre[:, 0], motion.centre[:, 1])
+    return np.abs(motion.centre @ (across / length))
 
 
 def twisted(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float:

@@ -27,8 +27,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SETTLED = 1e-4
-"""Residual angle [rad] below which one linear step ends the search for the meeting instant: it leaves half
-the stock's acceleration over that angle, 1e-8 of the work radius."""
+"""Residual angle [rad] of the stock below which one linear step ends the search for the meeting instant: it
+leaves half the stock's acceleration over that angle, 1e-8 of the work radius."""
+FURTHEST = 2e-3
+"""[rad] by which the edge may still stand off the point then, however slow the stock."""
 STILL = 1e-30
 """[rad per sample] in place of no motion at all, to divide by"""
 STEEPEST = 0.63
@@ -62,6 +64,10 @@ class DepthField:
         samples = np.arange(rows.shape[1], dtype=float)
         at = [np.interp(self.passes.at, samples, row) for row in rows]
         self._seen = np.stack([np.cos(at[0]), np.sin(at[0]), *at[2:]])
+        # what a first guess of the meeting instant needs: position and rates at `passes.at`, per pass
+        cell = np.minimum(self.passes.at.astype(np.int64), len(self._table) - 1)
+        self._lead = np.stack([at[1] - self.passes.angle, *self._table[cell, 5:].T])
+        self._settled = _settled(cutter, self.passes)
         profile = cutter.profile
         stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
         lean, far = sway(cutter, motion, stock)
@@ -244,9 +250,7 @@ class DepthField:
         if self._moved:
             local = self._mount.rotation @ local + self._mount.translation[:, None]
         first, last, angle = p.first.take(index), p.last.take(index), p.angle.take(index)
-        at = p.at.take(index)
-        state = self._state(local, at, angle)
-        at = np.clip(at - state.lag / state.lag_rate, first, last)
+        at = np.clip(p.at.take(index) + self._ahead(local, index), first, last)
         state = self._state(local, at, angle)
         rows = self._unsettled(state, at, first, last)
         if len(rows):
@@ -255,6 +259,25 @@ class DepthField:
             state.put(rows, self._state(late[0], at[rows], late[3]))
         end = np.clip(at - state.lag / state.lag_rate, first, last)
         return state, end, end - at
+
+    def _ahead(self, local: Floats, index: Ints) -> Floats:
+        """Samples (m,) from `passes.at` to where points (3, m) meet their edges, by one step of Newton's."""
+        cos, sin, cx, cy, cz = (row.take(index) for row in self._seen)
+        lag, d_work, d_tool, d_cx, d_cy, d_cz = (row.take(index) for row in self._lead)
+        x = local[0] * cos - local[1] * sin
+        y = local[0] * sin + local[1] * cos
+        offset = x - cx, y - cy, local[2] - cz
+        rate = -y * d_work - d_cx, x * d_work - d_cy, -d_cz
+        (a, b, s), (a_rate, b_rate, s_rate) = (
+            [u * row[0] + v * row[1] + w * row[2] for row in self._basis] for u, v, w in (offset, rate)
+        )
+        lag -= np.arctan2(b, a)
+        lag_rate = d_tool - (a * b_rate - b * a_rate) / (a * a + b * b)
+        if self.cutter.twist:
+            lag += self.cutter.twist * (s - self.cutter.shift)
+            lag_rate += self.cutter.twist * s_rate
+        lag_rate[lag_rate == 0.0] = STILL
+        return -lag / lag_rate
 
     def _search(self, at: Floats, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
         """Meeting instants to within SETTLED, by Newton's method from `at`."""
@@ -271,10 +294,9 @@ class DepthField:
         at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
         return at
 
-    @staticmethod
-    def _unsettled(state: State, at: Floats, first: Floats, last: Floats) -> Ints:
+    def _unsettled(self, state: State, at: Floats, first: Floats, last: Floats) -> Ints:
         """Rows of the points that can still come closer to their meeting instant."""
-        free = np.abs(state.lag) >= SETTLED
+        free = np.abs(state.lag) >= self._settled
         wanted = at - state.lag / state.lag_rate
         held = ((at == first) & (wanted < first)) | ((at == last) & (wanted > last))
         return np.flatnonzero(free & ~held)
@@ -385,3 +407,11 @@ def upright(a: Floats, b: Floats, s: Floats, lean: Floats) -> tuple[Floats, Floa
     high = np.sqrt(1.0 - x * x - y * y)
     turn = (x * b - y * a) / (1.0 + high)
     return high * a - x * s - y * turn, high * b - y * s + x * turn, high * s + x * a + y * b
+
+
+def _settled(cutter: Cutter, passes: Passes) -> float:
+    """Residual angle of the edge at which the stock is within SETTLED of the meeting [rad]."""
+    if not passes.count or passes.creep.any():
+        return SETTLED
+    ratio = float((passes.turn * cutter.lever(cutter.radius) + passes.slant).max())
+    return min(SETTLED / max(ratio, SETTLED), FURTHEST)

@@ -26,6 +26,10 @@ class Meeting:
     slack: Floats = field(default_factory=lambda: np.zeros(0))
     """(m,) [mm] to add to what rises above the tangent; of disc cutters, where the gradient was asked for"""
 
+    def of(self, rows: Ints | NDArray[np.bool_]) -> "Meeting":
+        """Some of the pairs."""
+        return Meeting(*(v[rows] if len(v := getattr(self, name)) else v for name in self.__slots__))
+
 
 @dataclass(frozen=True, slots=True)
 class State:

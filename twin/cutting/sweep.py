@@ -1,6 +1,6 @@
 """All tools' depth fields as one: their bites numbered through."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,10 +85,8 @@ class Sweep:
         out = (np.zeros(len(index)), np.zeros(len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
-            part = Meeting(*(v[here] if len(v := getattr(meeting, f.name)) else v for f in fields(Meeting)))
-            for whole, piece in zip(
-                out, f.bound(part, index[here] - self._first[n], radius[here]), strict=True
-            ):
+            bounds = f.bound(meeting.of(here), index[here] - self._first[n], radius[here])
+            for whole, piece in zip(out, bounds, strict=True):
                 whole[here] = piece
         return out
 

@@ -74,11 +74,17 @@ class Frame:
 
     def trial(self, flank: int, root: int) -> tuple[Floats, Floats]:
         """Origins and directions (n, 2) of rays to find the surface with, from the one tip to the other."""
-        x = np.linspace(self.outside, self.fan, flank + 1)[:-1]
+        # a gap is wider at its tips than half the pitch
+        first = self.outside * math.cos(0.5 * math.pi / self.indexing.teeth)
+        x = np.linspace(first, self.fan, flank + 1)[:-1]
         angle = np.linspace(0.5 * math.pi, 1.5 * math.pi, root)
         zeros, ones = np.zeros(flank), np.ones(flank)
         start = np.concatenate(
-            [np.stack([x, zeros], axis=1), np.tile([self.fan, 0.0], (root, 1)), np.stack([x, zeros], axis=1)[::-1]]
+            [
+                np.stack([x, zeros], axis=1),
+                np.tile([self.fan, 0.0], (root, 1)),
+                np.stack([x, zeros], axis=1)[::-1],
+            ]
         )
         along = np.concatenate(
             [
@@ -152,15 +158,13 @@ def chart_along(frame: Frame, mount: RigidTransform, surface: Floats, z: Floats)
     outer = np.where(fanned, BEYOND, 1.0) * frame.reach(start, along) - inner
     if not (np.isfinite(outer).all() and outer.min() > 0):
         raise IrregularError("the gap is wider than its pitch")
-    chart = Chart(
-        frame=frame, mount=mount, surface=surface, along=along, inner=inner, outer=outer, z=z
-    )
+    chart = Chart(frame=frame, mount=mount, surface=surface, along=along, inner=inner, outer=outer, z=z)
     _check_cover(chart)
     return chart
 
 
 def _check_cover(chart: Chart) -> None:
-    """Raise IrregularError unless the rays cover all of the sector between two tooth middles, core to outside."""
+    """Raise IrregularError unless the rays cover the sector between two tooth middles, core to outside."""
     frame = chart.frame
     half = math.pi / chart.gaps
     ends = chart.surface + chart.outer[:, None] * chart.along

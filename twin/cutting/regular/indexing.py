@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
+from twin.cutting.engagement import axes_apart
 from twin.cutting.motion import CutterMotion
 from twin.cutting.regular.irregular import IrregularError
 
@@ -14,6 +15,8 @@ Floats = NDArray[np.float64]
 
 AT_DEPTH = 0.02
 """Share of the infeed by which the tool may stand off its deepest and still index the gear."""
+UPRIGHT = 0.9
+"""Share of the tool's axis along the work's beyond which nothing is hobbed."""
 FEWEST, MOST = 5, 1000
 """Numbers of teeth that are tried."""
 
@@ -32,15 +35,14 @@ class Indexing:
 
 
 def find_indexing(cutter: Cutter, motion: CutterMotion, radius: float) -> Indexing:
-    """The gaps that a hob rolls into a blank of `radius`. Raises IrregularError where it cuts no such gear."""
+    """The gaps that a hob rolls into a blank of `radius` [mm]. Raises IrregularError for no such gear."""
     profile = cutter.profile
     if not math.isfinite(profile.pitch) or len(cutter.gash_angle) < 2:
         raise IrregularError("not hobbed")
     axis = motion.basis[2]
-    across = np.cross(axis, [0.0, 0.0, 1.0])
-    if np.linalg.norm(across) < 0.1:
+    if abs(axis[2]) > UPRIGHT:
         raise IrregularError("the hob's axis stands along the work's")
-    distance = np.abs(motion.centre @ (across / np.linalg.norm(across)))
+    distance = axes_apart(motion)
     root = float(distance.min()) - profile.tip
     if not 0 < root < radius:
         raise IrregularError("the tips do not come between the work's axis and its outside")

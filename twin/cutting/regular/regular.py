@@ -8,7 +8,7 @@ import numpy as np
 from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
-from twin.cutting.engagement import StockCylinder
+from twin.cutting.engagement import StockCylinder, axes_apart, sway
 from twin.cutting.motion import CutterMotion
 from twin.cutting.regular.chart import Frame, chart_along
 from twin.cutting.regular.indexing import find_indexing
@@ -53,31 +53,39 @@ def regular_cut(
 ) -> Regular:
     """What the tools remove, if that is proved to be equal gaps and nothing else.
 
-    The last of the tools indexes the gaps. `cell_mm` is the cell across the gaps (twice that along them); left
-    out, it follows from the tolerance. Raises IrregularError, with what is missing, for any other cut.
+    The last of the tools indexes the gaps. `cell_mm` is the cell across the gaps, half of that along them;
+    left out, it follows from the tolerance. Raises IrregularError, with what is missing, for any other cut.
     """
     cutter, motion = tools[-1]
     stock = StockCylinder.around(motion.mount, blank.radius, blank.z_range)
     indexing = find_indexing(cutter, motion, stock.radius)
     height = stock.radius - indexing.root
-    trial = Frame(indexing=indexing, stock=stock.radius, margin=0.04 * height)
+    trial = Frame(indexing=indexing, stock=stock.radius, margin=max(0.04 * height, RIM * (cell_mm or 0.0)))
     found = section(sweep, trial, motion.mount, 0.5 * (stock.z_low + stock.z_high))
     across, along = cell_mm, 2.0 * (cell_mm or 0.0)
     if across is None:
         across = max(math.sqrt(8.0 * ROOT_SAG * tolerance_um / bend(found)), FINEST * height)
         along = math.sqrt(8.0 * MARK_SAG * tolerance_um * cutter.radius)
     thick = across
-    tiling = Tiling.of(across, along, thick, cutter.radius)
+    tiling = Tiling.of((across, along), thick, cutter.radius, bend(found))
     frame = Frame(indexing=indexing, stock=stock.radius, margin=RIM * across)
+    if min(_lowest(c, m, stock) for c, m in tools) < frame.core:
+        raise IrregularError("something is cut below the root")
     surface = spaced(found, frame.outside, across, tiling.across)
     length = stock.z_high - stock.z_low + 2.0 * along
     count = tiling.along * math.ceil(length / (along * tiling.along))
     if indexing.teeth * count * len(surface) > LIMIT:
         raise IrregularError("too many cells")
     middle = 0.5 * (stock.z_low + stock.z_high)
-    z = middle + along * (np.arange(count + 1) - 0.5 * count)
+    z = middle + along * (np.arange(count + 1, dtype=np.float64) - 0.5 * count)
     chart = chart_along(frame, motion.mount, surface, z)
     patch, held = search(sweep, chart, tiling, thick)
     prove_inside(sweep, chart, patch, held.tangents, thick)
     made = skin(sweep, chart, patch, held.tangents, thick)
     return Regular(tubes(chart, made), (across, along), held.pairs)
+
+
+def _lowest(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float:
+    """Smallest radius about the work spindle's axis that the tips may reach [mm]."""
+    lean, far = sway(cutter, motion, stock)
+    return float(axes_apart(motion).min()) - cutter.radius - lean * far

@@ -5,7 +5,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 from twin.cutting.motion import RigidTransform
 from twin.cutting.refine import first_cull
@@ -18,6 +17,7 @@ Floats = NDArray[np.float64]
 FLANK, ROOT = 16, 25
 """Trial rays of a flank, and into the root."""
 HALVINGS = 14
+NO_GAP = "there is no gap where the rolling of tool and work puts one"
 THIN = 1e-3
 """Height of the section [mm]."""
 
@@ -41,17 +41,25 @@ def section(sweep: Sweep, frame: Frame, mount: RigidTransform, z: float) -> Floa
     beside = np.stack([np.maximum(rays - 1, 0), rays, np.minimum(rays + 1, n - 1)])
     ends = np.stack([np.zeros(n), reach])
     corners = np.stack(
-        [trial.at(np.array(0), i, np.array(k), tau[i])[0] for i in beside for k in (0, 2) for tau in ends], axis=1
+        [trial.at(np.array(0), i, np.array(k), tau[i])[0] for i in beside for k in (0, 2) for tau in ends],
+        axis=1,
     )
     middle = 0.5 * (corners.min(axis=1) + corners.max(axis=1))
     done = first_cull(sweep, middle, corners)
     crossed = np.zeros(n, dtype=bool)
     crossed[done.alive] = True
-    block = np.cumsum(crossed) - 1
+    if not crossed[n // 2]:
+        raise IrregularError(NO_GAP)
+    block = np.maximum(np.cumsum(crossed) - 1, 0)
     low, high = np.zeros(n), reach.copy()
     for _ in range(HALVINGS):
         tau = 0.5 * (low + high)
-        inside = sweep.deepest(trial.at(0, rays, 1, tau)[0], block, done.tangents, sign=True).depth > 0
+        inside = (
+            sweep.deepest(
+                trial.at(np.array(0), rays, np.array(1), tau)[0], block, done.tangents, sign=True
+            ).depth
+            > 0
+        )
         low, high = np.where(inside, tau, low), np.where(inside, high, tau)
     crossed &= (low > 0) & (high < reach)
     # near the tips the land between the hob's teeth may cut; what counts is the surface up to `outside`
@@ -59,7 +67,7 @@ def section(sweep: Sweep, frame: Frame, mount: RigidTransform, z: float) -> Floa
     upper = found[: n // 2 + 1][np.flatnonzero(~crossed[: n // 2]).max(initial=-1) + 1 :]
     lower = found[n // 2 + 1 :][: np.flatnonzero(~np.append(crossed[n // 2 + 1 :], False)).min()]
     if not crossed[n // 2] or min(len(upper), len(lower)) < ROOT // 2:
-        raise IrregularError("no gap where the rolling of tool and work puts one")
+        raise IrregularError(NO_GAP)
     return np.vstack([upper, lower])
 
 
@@ -76,12 +84,18 @@ def spaced(surface: Floats, outside: float, step: float, multiple: int) -> Float
     length, curve = _curve(surface)
     first = int(np.flatnonzero(radius[:lowest] >= outside).max())
     last = lowest + int(np.flatnonzero(radius[lowest:] >= outside).min())
-    ends = [
-        brentq(lambda at: float(np.hypot(*curve(at))) - outside, length[low], length[low + 1])
-        for low in (first, last - 1)
-    ]
+    ends = [_where(curve, outside, length[at], length[at + 1]) for at in (first, last - 1)]
     count = multiple * math.ceil((ends[1] - ends[0]) / (step * multiple))
     return np.asarray(curve(np.linspace(ends[0], ends[1], count + 1)), dtype=np.float64)
+
+
+def _where(curve: CubicSpline, radius: float, low: float, high: float) -> float:
+    """Where a curve passes a radius between two places on its two sides."""
+    rising = float(np.hypot(*curve(low))) < radius
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if (float(np.hypot(*curve(middle))) < radius) == rising else (low, middle)
+    return 0.5 * (low + high)
 
 
 def bend(surface: Floats) -> float:

@@ -1,4 +1,4 @@
-"""The cut surface in a proved chart: exact crossings on all rays, one vertex where the planes around it meet."""
+"""The cut surface in a proved chart: exact crossings on all rays, vertices where their planes meet."""
 
 from dataclasses import dataclass
 
@@ -14,8 +14,11 @@ from twin.cutting.sweep import Sweep
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SETTLED = 1e-3
-"""[mm] below which one Newton step ends on the surface: what is left is its square over a radius."""
+SETTLED = 2e-4
+"""[mm] below which one Newton step ends on the surface: what is left is its square over a radius, or, where
+another bite takes over, a share of it."""
+ROUNDS = 5
+"""of Newton's method"""
 STIFFNESS = 1e-6
 """What a vertex's way from the middle costs, against its distance from the planes, both squared: feed marks
 and generating flats differ by a hundredth of a radian."""
@@ -30,7 +33,7 @@ class Skin:
     vertices: Floats
     """(gaps, nu, nz, 3) [mm]"""
     rising: NDArray[np.bool_]
-    """(gaps, nu - 1, nz - 1) whether four neighbouring vertices are split from the first to the last, not across"""
+    """(gaps, nu - 1, nz - 1) whether four neighbouring vertices are split from the first to the last"""
 
 
 def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: float) -> Skin:
@@ -42,7 +45,7 @@ def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: 
     block = home.reshape(-1)
     vertices = np.ascontiguousarray(guess.reshape(-1, 3))
     left = np.arange(len(vertices))
-    for _ in range(2):
+    for _ in range(ROUNDS):
         found = sweep.deepest(vertices[left], block[left], tangents, gradient=True)
         step = found.depth / np.einsum("nx,nx->n", found.gradient, found.gradient)
         vertices[left] -= step[:, None] * found.gradient
@@ -101,8 +104,10 @@ def _crossings(
     np.clip(tau, -thick, thick, out=tau)
     slope = np.zeros_like(start)
     left = np.arange(len(block))
-    for _ in range(3):
-        found = sweep.deepest(start[left] + tau[left, None] * along[left], block[left], tangents, gradient=True)
+    for _ in range(ROUNDS):
+        found = sweep.deepest(
+            start[left] + tau[left, None] * along[left], block[left], tangents, gradient=True
+        )
         slope[left] = found.gradient
         step = found.depth / np.minimum(np.einsum("nx,nx->n", found.gradient, along[left]), -1e-3)
         tau[left] = np.clip(tau[left] - step, -thick, thick)
@@ -116,7 +121,7 @@ def _meet(points: Floats, normals: Floats) -> Floats:
     corners = [(a, b) for a in (0, 1) for b in (0, 1)]
     cut = [(slice(None), slice(a, a - 1 or None), slice(b, b - 1 or None)) for a, b in corners]
     p, q = [points[at] for at in cut], [normals[at] for at in cut]
-    middle = sum(p) / 4.0
+    middle = np.mean(p, axis=0)
     scatter = np.zeros((6, *middle.shape[:-1]))
     pull = np.zeros((3, *middle.shape[:-1]))
     pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
@@ -137,12 +142,13 @@ def _meet(points: Floats, normals: Floats) -> Floats:
 
 
 def _solved(matrix: Floats, right: Floats) -> Floats:
-    """Solutions (…, 3) of symmetric systems: rows xx, yy, zz, xy, xz, yz of the matrices (6, …), sides (3, …)."""
+    """Solutions (…, 3) of symmetric systems: xx, yy, zz, xy, xz, yz of the matrix (6, …), sides (3, …)."""
     xx, yy, zz, xy, xz, yz = matrix
     a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
     d, e, f = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
     determinant = xx * a + xy * b + xz * c
     x, y, z = right
-    return np.stack([a * x + b * y + c * z, b * x + d * y + e * z, c * x + e * y + f * z], axis=-1) / determinant[
-        ..., None
-    ]
+    return (
+        np.stack([a * x + b * y + c * z, b * x + d * y + e * z, c * x + e * y + f * z], axis=-1)
+        / determinant[..., None]
+    )

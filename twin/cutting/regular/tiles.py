@@ -34,8 +34,16 @@ size: edge² / (tip radius · thickness)."""
 TILES = {4.0: 3.0, 2.0: 1.5, 1.0: 1.0, 0.5: 1.0}
 """Tiles along the edge of the blocks, from coarse to fine -> how much thicker the shell is taken there: in
 large blocks the bounds are wider."""
+ROUNDS = 3
+"""How often patches are quartered for bites that may touch what lies behind the shell."""
 SAMPLED = 9
 """Rays of a block at which the way behind it is looked at."""
+
+
+ROUND = 3.5
+"""Edge of a tile over the root of thickness and radius where the gap bends most: a quarter of it keeps to its
+tangent within a third of the thickness."""
+UNCUT = "the gaps are not cut all along"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +54,15 @@ class Tiling:
     along: int
 
     @classmethod
-    def of(cls, across: float, along: float, thick: float, tip: float) -> "Tiling":
-        """For cells of this size [mm], a shell of this thickness and a tool of this tip radius [mm]."""
+    def of(cls, cell: tuple[float, float], thick: float, tip: float, bend: float) -> "Tiling":
+        """For cells across and along [mm], a shell of a thickness, a tool of a tip radius [mm], and gaps that
+        bend by so much at most [1/mm]."""
         edge = math.sqrt(BENT * tip * thick)
-        numbers = (min(max(2 * round(edge / (2.0 * cell)), 2), LARGEST) for cell in (across, along))
-        return cls(**dict(zip(("across", "along"), numbers, strict=True)))
+        edges = min(edge, ROUND * math.sqrt(thick / bend)), edge
+        across, along = (
+            min(max(2 * round(e / (2.0 * c)), 2), LARGEST) for e, c in zip(edges, cell, strict=True)
+        )
+        return cls(across=across, along=along)
 
     def times(self, tiles: float) -> tuple[int, int]:
         """Cells of a block of some tiles."""
@@ -92,6 +104,23 @@ class Blocks:
     depth: Floats
     """(n,) longest of the ways [mm]"""
 
+    def of(self, part: slice) -> "Blocks":
+        """Some of them."""
+        return Blocks(
+            self.middle[part],
+            self.corners[part],
+            self.radius[part],
+            *(values[..., part] for values in (self.face, self.behind, self.slack, self.depth)),
+        )
+
+    def spokes(self, origin: Floats) -> Floats:
+        """(8, 3, n) from `origin` (n, 3) to the corners."""
+        return np.ascontiguousarray((self.corners - origin[:, None]).transpose(1, 2, 0))
+
+    def outside(self, middle: Floats, radius: Floats) -> Bools:
+        """Which of them stand out of balls."""
+        return np.linalg.norm(self.corners - middle[:, None], axis=2).max(axis=1) > radius
+
 
 def patches(chart: Chart, size: tuple[int, int]) -> Patches:
     """Patches of `size` cells across and along the gaps, fewer at the ends."""
@@ -130,7 +159,9 @@ def blocks(chart: Chart, patch: Patches, thick: float) -> Blocks:
     i = np.minimum(patch.i[:, :1] + np.arange(cells + 1), patch.i[:, 1:])
     shape = (len(patch.gap), 2, cells + 1)
     gap, i, k = patch.gap[:, None, None], i[:, None, :], patch.k[:, :, None]
-    point, along = chart.at(np.broadcast_to(gap, shape), np.broadcast_to(i, shape), np.broadcast_to(k, shape), np.zeros(1))
+    point, along = chart.at(
+        np.broadcast_to(gap, shape), np.broadcast_to(i, shape), np.broadcast_to(k, shape), np.zeros(1)
+    )
     # axes along the gap, across it, and into the tooth
     up = (point[:, 1] - point[:, 0]).mean(axis=1)
     up /= np.linalg.norm(up, axis=1, keepdims=True)
@@ -201,11 +232,26 @@ def search(sweep: Sweep, chart: Chart, tiling: Tiling, thick: float) -> tuple[Pa
         patch, parent = quarters(patch, tiling.times(tiles))
         held = refined(sweep, blocks(chart, patch, TILES[tiles] * thick), parent, held)
         pairs += held.pairs
-    if not held.safe.all():
-        raise IrregularError("something is cut outside of the gaps")
-    if (np.diff(held.tangents.lists.start) == 0).any():
-        raise IrregularError("the gaps are not cut all along")
+    _settle(sweep, chart, patch, held, thick)
     return patch, Held(held.tangents, held.safe, pairs)
+
+
+def _settle(sweep: Sweep, chart: Chart, patch: Patches, held: Held, thick: float) -> None:
+    """Raise IrregularError where a bite that is not known to be safe is not so on ever smaller patches."""
+    lists = held.tangents.lists.where(~held.safe)
+    for _ in range(ROUNDS):
+        some = np.flatnonzero(np.diff(lists.start))
+        if not len(some):
+            return
+        patch = patch.of(some)
+        size = (int((np.ptp(edges, axis=1).max() + 1) // 2) for edges in (patch.i, patch.k))
+        patch, parent = quarters(patch, (next(size), next(size)))
+        lists = lists.of(some[parent])
+        block, owner = blocks(chart, patch, thick), lists.owner()
+        meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
+        lists = lists.where(~_stays_out(sweep, block, owner, lists.bites, meeting))
+    if len(lists.bites):
+        raise IrregularError("something is cut outside of the gaps")
 
 
 def _columns(block: Blocks) -> tuple[Floats, Floats]:
@@ -223,107 +269,95 @@ def refined(sweep: Sweep, block: Blocks, parent: Ints, held: Held) -> Held:
     length = np.diff(above.lists.start)[parent]
 
     def work(part: slice) -> Held:
-        rows = np.arange(part.start, part.stop)
-        own = parent[rows]
-        pairs = above.lists.pairs(own)
+        here = block.of(part)
+        own = parent[part]
+        safe = held.safe[above.lists.pairs(own)]
         mine = above.of(own)
         owner = mine.lists.owner()
-        way = block.middle[rows] - mine.middle
+        way = here.middle - mine.middle
         height = mine.plane[0] + np.einsum("xm,mx->m", mine.plane[1:], way[owner])
-        judge = mine.lists.bites[leaders(height, mine.lists.start)[1]]
-        floors = _floors(sweep, block, rows, judge)
-        spokes = np.ascontiguousarray((block.corners[rows] - mine.middle[:, None]).transpose(1, 2, 0))
-        outside = np.linalg.norm(block.corners[rows] - mine.middle[:, None], axis=2).max(axis=1) > mine.radius
-        keep = can_matter(mine.plane, mine.over, owner, spokes, floors) | outside[owner]
-        keep |= ~held.safe[pairs]
-        return _judged(sweep, block, rows, mine.lists.where(keep), held.safe[pairs][keep], floors)
+        floors = _floors(sweep, here, mine.lists, height)
+        outside = here.outside(mine.middle, mine.radius)
+        keep = can_matter(mine.plane, mine.over, owner, here.spokes(mine.middle), floors)
+        keep |= outside[owner] | ~safe
+        return _judged(sweep, here, mine.lists.where(keep), safe[keep], floors)
 
     return _gathered(np.concatenate([[0], np.cumsum(length)]), work)
 
 
 def first_held(sweep: Sweep, block: Blocks, lists: Candidates) -> Held:
     """The bites of blocks from all that come near."""
-    if (np.diff(lists.start) == 0).any():
-        raise IrregularError("the gaps are not cut all along")
 
     def work(part: slice) -> Held:
-        rows = np.arange(part.start, part.stop)
-        own = lists.of(rows)
-        return _judged(sweep, block, rows, own, np.zeros(len(own.bites), dtype=bool), None)
+        own = lists.of(np.arange(part.start, part.stop))
+        return _judged(sweep, block.of(part), own, np.zeros(len(own.bites), dtype=bool), None)
 
+    if (np.diff(lists.start) == 0).any():
+        raise IrregularError(UNCUT)
     return _gathered(lists.start, work)
 
 
-def _judged(
-    sweep: Sweep, block: Blocks, rows: Ints, lists: Candidates, safe: Bools, floors: Floats | None
-) -> Held:
-    """Cull by the tangents at the blocks' own middles."""
+def _judged(sweep: Sweep, block: Blocks, lists: Candidates, safe: Bools, floors: Floats | None) -> Held:
+    """Cull by the tangents at the blocks' own middles; what is not safe stays, if it is not found to be."""
     owner = lists.owner()
-    middle, radius = block.middle[rows], block.radius[rows]
-    meeting = sweep.evaluate(middle.take(owner, axis=0), lists.bites, gradient=True)
-    change, over = sweep.bound(meeting, lists.bites, radius[owner])
-    plane = np.vstack([meeting.depth, meeting.gradient.T])
+    meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
+    change, over = sweep.bound(meeting, lists.bites, block.radius[owner])
     if floors is None:
-        judge = lists.bites[leaders(meeting.depth, lists.start)[1]]
-        floors = _floors(sweep, block, rows, judge)
-    spokes = np.ascontiguousarray((block.corners[rows] - middle[:, None]).transpose(1, 2, 0))
-    keep = can_matter(plane, over, owner, spokes, floors)
+        floors = _floors(sweep, block, lists, meeting.depth)
+    plane = np.vstack([meeting.depth, meeting.gradient.T])
+    keep = can_matter(plane, over, owner, block.spokes(block.middle), floors)
     keep &= meeting.depth + change > 0
     unsure = np.flatnonzero(~safe)
     safe = safe.copy()
-    safe[unsure] = _stays_out(sweep, block, rows, _some(meeting, unsure), lists.bites[unsure], over[unsure], owner[unsure])
+    safe[unsure] = _stays_out(sweep, block, owner[unsure], lists.bites[unsure], meeting.of(unsure))
     keep |= ~safe
     some = np.flatnonzero(keep)
-    tangents = Tangents(lists.where(keep), middle, radius, plane.take(some, axis=1), over.take(some))
+    tangents = Tangents(
+        lists.where(keep), block.middle, block.radius, plane.take(some, axis=1), over.take(some)
+    )
     return Held(tangents, safe[some], len(owner))
 
 
-def _some(meeting: Meeting, rows: Ints) -> Meeting:
-    return Meeting(
-        meeting.depth[rows],
-        meeting.gradient[rows],
-        meeting.s[rows],
-        meeting.rho[rows],
-        meeting.instant[rows],
-        meeting.slack[rows] if len(meeting.slack) else meeting.slack,
-    )
+def _floors(sweep: Sweep, block: Blocks, lists: Candidates, height: Floats) -> Floats:
+    """Lower bounds at the blocks' corners, of the bite that stands highest in each list."""
+    judge = lists.bites[leaders(height, lists.start)[1]]
+    return sweep.floors(block.middle, block.corners, judge, block.radius)
 
 
-def _stays_out(
-    sweep: Sweep, block: Blocks, rows: Ints, meeting: Meeting, bite: Ints, over: Floats, owner: Ints
-) -> Bools:
-    """Which bites (m,) touch nothing behind the shell on their blocks.
+def _stays_out(sweep: Sweep, block: Blocks, owner: Ints, bite: Ints, meeting: Meeting) -> Bools:
+    """Which bites (m,), met at their blocks' middles, touch nothing that lies behind the shell.
 
-    At y + t w, y in the shell's back and w the way behind it, a bite's depth is at most tangent(y) + t g · w +
-    what the tangent may be wrong by that far out: a convex function of t, which is below zero if it is so
-    at both ends.
+    At y + t w, y in the shell's back and w the way behind it, a bite's depth is at most tangent(y) +
+    t g · w + what the tangent may be wrong by that far out: a convex function of t, which is below zero if it
+    is so at both ends.
     """
+    over = sweep.bound(meeting, bite, block.radius[owner])[1]
+    change, beyond = sweep.bound(meeting, bite, (block.radius + block.depth)[owner])
     gradient = meeting.gradient.T
     steep = np.linalg.norm(meeting.gradient, axis=1)
-    near_slack, far_slack = (steep * slack[rows].take(owner) for slack in block.slack)
-    far = (block.radius + block.depth)[rows][owner]
-    change, beyond = sweep.bound(meeting, bite, far)
-    here = np.full(len(bite), -np.inf)
-    there = np.full(len(bite), -np.inf)
+    here, there = np.full((2, len(bite)), -np.inf)
     for face, behind in zip(block.face, block.behind, strict=True):
-        near = sum(gradient[x] * face[x, rows].take(owner) for x in range(3))
-        np.maximum(here, near, out=here)
-        near += sum(gradient[x] * behind[x, rows].take(owner) for x in range(3))
-        np.maximum(there, near, out=there)
-    level = meeting.depth
-    falls = (level + here + near_slack + over < 0) & (level + there + far_slack + beyond < 0)
-    return falls | (level + change < 0)
+        height = _along(gradient, face, owner)
+        np.maximum(here, height, out=here)
+        height += _along(gradient, behind, owner)
+        np.maximum(there, height, out=there)
+    here += meeting.depth + steep * block.slack[0].take(owner) + over
+    there += meeting.depth + steep * block.slack[1].take(owner) + beyond
+    return ((here < 0) & (there < 0)) | (meeting.depth + change < 0)
 
 
-def _floors(sweep: Sweep, block: Blocks, rows: Ints, judge: Ints) -> Floats:
-    return sweep.floors(block.middle[rows], block.corners[rows], judge, block.radius[rows])
+def _along(gradient: Floats, way: Floats, owner: Ints) -> Floats:
+    """Scalar products (m,) of gradients (3, m) with their blocks' ways (3, n)."""
+    total = gradient[0] * way[0].take(owner)
+    total += gradient[1] * way[1].take(owner)
+    total += gradient[2] * way[2].take(owner)
+    return total
 
 
 def _gathered(start: Ints, work: Callable[[slice], Held]) -> Held:
     """`work` on slices of blocks, whose lists of pairs begin at `start`."""
     done = in_parallel(work, batches(start))
-    return Held(
-        joined([h.tangents for h in done]),
-        np.concatenate([h.safe for h in done]),
-        sum(h.pairs for h in done),
-    )
+    tangents = joined([h.tangents for h in done])
+    if (np.diff(tangents.lists.start) == 0).any():
+        raise IrregularError(UNCUT)
+    return Held(tangents, np.concatenate([h.safe for h in done]), sum(h.pairs for h in done))

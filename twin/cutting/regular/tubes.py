@@ -15,7 +15,7 @@ Bools = NDArray[np.bool_]
 
 def tubes(chart: Chart, made: Skin) -> Surface:
     """What was removed, gap by gap. Raises IrregularError where a skin does not reach out of the blank."""
-    gaps, nu, nz, _ = made.vertices.shape
+    gaps = chart.gaps
     rotation, shift = chart.mount.rotation, chart.mount.translation
     inner = made.vertices @ rotation.T + shift
     rims = inner[:, [0, -1]]
