@@ -22,6 +22,8 @@ class Options:
     """axes follow their setpoints exactly"""
     cell_mm: float | None = None
     """cell of the cutting grid; None = chosen"""
+    tolerance_um: float = 1.0
+    """how far facets of a flank may stand off the cut; three times as far in roots, twice on other parts"""
     chips: bool = False
     """count what each tooth takes away"""
     events: tuple[OperatorEvent, ...] = ()

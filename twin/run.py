@@ -73,7 +73,13 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         blank = job.work.blank()
         # the cut says at once what it would need, not after the run
         tip = foreseen.extents["X"].machine[0] + job.setup.reference.X if "X" in foreseen.extents else 0.0
-        plan_grid(blank, cutters.values(), closest=max(tip / 2.0, 0.0), cell_mm=options.cell_mm)
+        plan_grid(
+            blank,
+            cutters.values(),
+            closest=max(tip / 2.0, 0.0),
+            cell_mm=options.cell_mm,
+            tolerance_um=options.tolerance_um,
+        )
     period = ready.spec.control_period_s
     samples = math.ceil(cycle / period)
     tell.stage(
@@ -90,7 +96,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     tell.stage("cutting")
     with watch.measure("cutting"):
         result = cut(
-            blank, session.motions, cell_mm=options.cell_mm, progress=lambda _stage, share: tell.share(share)
+            blank,
+            session.motions,
+            cell_mm=options.cell_mm,
+            tolerance_um=options.tolerance_um,
+            progress=lambda _stage, share: tell.share(share),
         )
     taken = None
     if options.chips:

@@ -11,6 +11,13 @@ def add_run(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> 
     run.add_argument("--out", type=Path, metavar="DIR", help="result folder (default: out/<job name>)")
     run.add_argument("--ideal", action="store_true", help="axes follow their setpoints exactly")
     run.add_argument("--cell-mm", type=float, metavar="MM", help="cell of the cutting grid (default: chosen)")
+    run.add_argument(
+        "--tolerance-um",
+        type=float,
+        default=1.0,
+        metavar="UM",
+        help="of the mesh on flanks; roots have three times, other parts twice as much (default: 1)",
+    )
     _add_events(run)
     run.add_argument("--chips", action="store_true", help="what each tooth takes away; writes chips.npz")
     run.add_argument("--strict", action="store_true", help="warnings are findings too")

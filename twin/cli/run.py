@@ -19,10 +19,17 @@ def run_command(options: argparse.Namespace) -> ExitCode:
     cell = options.cell_mm
     if cell is not None and not (math.isfinite(cell) and cell > 0):
         raise InputError(f"--cell-mm {cell:g}", remedy="valid: above 0, for example 0.1")
+    tolerance = options.tolerance_um
+    if not (math.isfinite(tolerance) and tolerance > 0):
+        raise InputError(f"--tolerance-um {tolerance:g}", remedy="valid: above 0, for example 1")
     job = read_job(options.job)
     out = options.out or Path("out") / job.name
     settings = Options(
-        ideal=options.ideal, cell_mm=cell, chips=options.chips, events=events_of_options(options)
+        ideal=options.ideal,
+        cell_mm=cell,
+        tolerance_um=tolerance,
+        chips=options.chips,
+        events=events_of_options(options),
     )
     if options.quiet or not sys.stderr.isatty():
         reporter: Reporter = Silent() if options.quiet else Lines()

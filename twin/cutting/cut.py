@@ -61,14 +61,16 @@ def cut(
 ) -> CutResult:
     """Cut the blank by everything the tools sweep.
 
-    `cell_mm` is the grid's cell across the surface (`plan_grid`). Raises PartError where nothing is left or
-    the motion is not modelled, InputError for a cell that cannot be.
+    Facets keep to `tolerance_um` on the flanks of a regular gear, three times that in its roots, twice that
+    on any other part as a rule; `cell_mm`, the cell across the surface, takes its place. Raises PartError
+    where nothing is left or the motion is not modelled, InputError for a cell or a tolerance that cannot be.
     """
     progress("passes", 0.0)
     if not tools:
         return _uncut(blank, ("the tool never moved: nothing was cut",))
     closest = min(_closest(c, m) for c, m in tools)
-    grid = plan_grid(blank, [c for c, _ in tools], closest=closest, cell_mm=cell_mm)
+    cutters = [c for c, _ in tools]
+    grid = plan_grid(blank, cutters, closest=closest, cell_mm=cell_mm, tolerance_um=tolerance_um)
     sweep = Sweep(tuple(tool_field(c, m, grid.hull_radius, grid.z_range) for c, m in tools))
     notes = [*_rubbing(blank, tools)]
     if sweep.passes == 0:

@@ -25,17 +25,24 @@ CORE = 0.02
 
 
 def plan_grid(
-    blank: Blank, cutters: Iterable[Cutter], *, closest: float, cell_mm: float | None = None
+    blank: Blank,
+    cutters: Iterable[Cutter],
+    *,
+    closest: float,
+    cell_mm: float | None = None,
+    tolerance_um: float = 1.0,
 ) -> Grid:
     """The grid for a cut whose edges come as near as `closest` [mm] to the work axis.
 
-    `cell_mm` is its cell across the surface (twice that along z); left out, it follows from the teeth and the
-    size of the blank. Raises InputError for a cell that is none, or one that would need more memory than
-    ALLOWED, with the estimate.
+    `cell_mm` is its cell across the surface (twice that along z); left out, it follows from the teeth, the
+    size of the blank and the tolerance, to which errors go with the square of the cell. Raises InputError for
+    what is no cell or no tolerance, or would need more memory than ALLOWED, with the estimate.
     """
     if cell_mm is not None and not (math.isfinite(cell_mm) and cell_mm > 0):
         raise InputError(f"a cell of {cell_mm:g} mm", remedy="valid: above 0, for example 0.1")
-    cell = _cell(blank, cutters) if cell_mm is None else cell_mm
+    if not (math.isfinite(tolerance_um) and tolerance_um > 0):
+        raise InputError(f"a tolerance of {tolerance_um:g} µm", remedy="valid: above 0, for example 1")
+    cell = _cell(blank, cutters) * math.sqrt(tolerance_um) if cell_mm is None else cell_mm
     lowest = max(CORE * blank.radius, 0.5 * blank.bore_mm, closest)
     low = max(lowest - 2.5 * cell, 0.5 * CORE * blank.radius)
     if low >= blank.radius:
@@ -45,10 +52,13 @@ def plan_grid(
         coarser = max(cell, LEAST)
         while _memory(blank, low, coarser) > ALLOWED:
             coarser *= 1.05
+        fits = f"--cell-mm {math.ceil(coarser * 1e3) / 1e3:g}"
+        if cell_mm is None and tolerance_um < 1.0:
+            fits = f"--tolerance-um {math.ceil(tolerance_um * (coarser / cell) ** 2 * 1e3) / 1e3:g}"
         raise InputError(
-            f"cells of {cell:g} mm would need about {needed / 2**30:.1f} GiB of memory, "
+            f"cells of {cell:.3g} mm would need about {needed / 2**30:.1f} GiB of memory, "
             f"{ALLOWED / 2**30:g} are allowed",
-            remedy=f"valid: --cell-mm {math.ceil(coarser * 1e3) / 1e3:g} or more",
+            remedy=f"valid: {fits} or more",
         )
     return grid_around(
         r_low=low,

@@ -72,3 +72,20 @@ def test_huge_blank_gets_a_cell_that_fits():
         blank = Blank(diameter_mm=size, length_mm=size)
         grid = plan_grid(blank, [HOB.cutter(0.0)], closest=0.0)
         assert np.prod(grid.node_shape, dtype=float) * 8 < ALLOWED
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan, math.inf])
+def test_a_tolerance_that_is_none_is_refused(tool, tolerance):
+    with pytest.raises(InputError, match=r"a tolerance of .* above 0"):
+        cut(BLANK, (tool,), tolerance_um=tolerance)
+
+
+def test_more_memory_than_allowed_is_said_with_a_tolerance_that_fits(tool):
+    with pytest.raises(InputError, match=r"--tolerance-um \S+ or more") as refused:
+        cut(BLANK, (tool,), tolerance_um=0.01)
+    found = re.search(r"--tolerance-um (\S+) or", str(refused.value))
+    assert found
+    fine = plan_grid(BLANK, [tool[0]], closest=17.0, tolerance_um=float(found[1]))
+    # errors go with the square of the cell
+    usual = plan_grid(BLANK, [tool[0]], closest=17.0)
+    assert fine.cell_mm[0] / usual.cell_mm[0] == pytest.approx(math.sqrt(float(found[1])), rel=0.02)
