@@ -44,6 +44,10 @@ IRREGULAR = 0.2
 """spread of the faces' distances, as part of their mean, from which there is no regular polygon"""
 LOBED = 0.6
 """bow, as part of that of a round bar, from which a face is no face"""
+HOLLOW = 0.25
+"""flatness, as part of a face's width, beyond which it is no face: a scoop of Q/P = -3 takes 0.08"""
+GAUSS = np.polynomial.legendre.leggauss(4)
+"""nodes and weights along a chord"""
 UNTWISTED = 1e-3
 """a twist below this [degrees/mm] has no hand"""
 NO_TWIST = 5e-5
@@ -93,6 +97,12 @@ def measure_polygon(
         raise PartError(
             f"{sides} faces stand about the axis, but {mid.min():.3f} to {mid.max():.3f} mm from it: "
             "no regular polygon"
+        )
+    worst = max(faces, key=lambda f: f.flatness_um / f.width_mm)
+    if worst.flatness_um / 1000 > HOLLOW * worst.width_mm:
+        raise PartError(
+            f"{sides} shapes of {worst.width_mm:.3f} mm stand about the axis, "
+            f"{worst.flatness_um / 1000:.3f} mm from flat: lugs or gaps, no faces of a polygon"
         )
     twist = _unless_noise(math.degrees(outline.twist), NO_TWIST)
     flatness = max(f.flatness_um for f in faces)
@@ -147,10 +157,13 @@ def _turn(solid: Solid, outline: Outline) -> Outline:
     done = 0
     for outer in map(outer_outlines, plane_segments_in_parts(solid, heights)):
         start, end, row = _short_chords(outer, outline.count)
-        middle = (start + end) / 2
-        # each chord's sector by its angle and squared distance
-        weight = np.angle(end * start.conj()) * np.abs(middle) ** 2
-        np.add.at(wave, done + outer.plane[row], weight * (middle.conj() / np.abs(middle)) ** outline.count)
+        # r² d(angle) is the same all along a chord; the wave over it by Gauss and Legendre
+        sector = (start.conj() * end).imag
+        over = np.zeros(len(row), dtype=np.complex128)
+        for node, share in zip(*GAUSS, strict=True):
+            at = start + (node + 1) / 2 * (end - start)
+            over += share / 2 * (at.conj() / np.abs(at)) ** outline.count
+        np.add.at(wave, done + outer.plane[row], sector * over)
         done += len(outer.heights)
     along = heights - outline.middle
     rest = wave * np.exp(1j * outline.count * (outline.phase + outline.twist * along))

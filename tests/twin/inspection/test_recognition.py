@@ -72,6 +72,29 @@ def test_lobes_are_no_polygon(parts):
     refused(round_bar(parts, waves=7, height=0.1, diameter=35.0), None, "7 lobes stand about the axis")
 
 
+def test_lugs_are_no_polygon():
+    lug = m3.Manifold.cube((4, 3, 20)).translate((8.5, -1.5, 0))
+    lugs = [lug.rotate((0, 0, 60.0 * k)) for k in range(6)]
+    shaft = m3.Manifold.cylinder(20, 10, 10, 128)
+    refused(mesh_of(m3.Manifold.batch_boolean([shaft, *lugs], m3.OpType.Add)), None, "no faces of a polygon")
+
+
+@pytest.mark.parametrize("sides", [2, 3, 4, 6, 12])
+def test_straight_prisms_do_not_twist(sides):
+    """Two triangles a face: their common edge wanders across it, the section does not turn."""
+    if sides == 2:
+        bar = m3.Manifold.cylinder(20, 10, 10, 128) ^ m3.Manifold.cube((14, 40, 50), True)
+    else:
+        bar = m3.Manifold.cylinder(20, 10, 10, sides)
+    polygon = inspect(*mesh_of(bar)).polygon
+    assert polygon.number_of_sides == sides
+    assert (polygon.twist_deg_per_mm, polygon.hand) == (0.0, "none")
+    assert polygon.across_flats_mm == pytest.approx(
+        14.0 if sides == 2 else 20 * np.cos(np.pi / sides), abs=1e-6
+    )
+    assert polygon.bow_um == 0.0
+
+
 def test_another_gear_than_named(spur, named):
     refused(spur, named(teeth=19), "20 teeth instead of 19")
     refused(spur, named(helix_deg=20.0), "helix angle 0° instead of 20°")
