@@ -4,6 +4,7 @@ An orthographic scan-line renderer with a depth buffer, vectorised over all tria
 """
 
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,7 +71,8 @@ def render_part(
     """
     mesh = _Mesh(vertices, faces)
     width, height = size[0] * SAMPLES, size[1] * SAMPLES
-    return tuple(png_rgba(_draw(mesh, width, height, view, tint)) for view, tint in views)
+    with ThreadPoolExecutor() as pool:  # numpy leaves the interpreter free
+        return tuple(pool.map(lambda shot: png_rgba(_draw(mesh, width, height, *shot), level=3), views))
 
 
 def place(vertices: Floats, size: tuple[int, int], view: View, points: Floats) -> Floats:
