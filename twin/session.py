@@ -190,6 +190,17 @@ def _recording(
     return recording, tuple(motions)
 
 
+def tool_motions(
+    tools: tuple[MountedTool, ...], time_s: Floats, actual: Floats, tool: NDArray[np.int16]
+) -> tuple[tuple[Cutter, CutterMotion], ...]:
+    """How recorded axes (n, axes) move each tool, one for each stretch with one tool in the spindle."""
+    return tuple(
+        (mounted.cutter, cutter_motion(mounted.kinematics, time_s[first:last], actual[first:last]))
+        for first, last, mounted in _stretches(tools, tool)
+        if last - first > 1
+    )
+
+
 def _stretches(tools: tuple[MountedTool, ...], tool: NDArray) -> list[tuple[int, int, MountedTool]]:
     """First and one-past-last sample of each stretch with one tool; number 0 is the first tool."""
     if not len(tool):

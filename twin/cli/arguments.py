@@ -25,6 +25,19 @@ def add_run(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> 
     return run
 
 
+def add_budget(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+    """`budget`: what to mend first."""
+    budget = commands.add_parser(
+        "budget", help="what each fault and drive does to the gear, alone and together"
+    )
+    budget.add_argument("job", type=Path, metavar="JOB", help="a job folder or a job.toml")
+    budget.add_argument(
+        "--out", type=Path, metavar="DIR", help="result folder (default: out/<job name>_budget)"
+    )
+    budget.add_argument("--quiet", action="store_true", help="no progress")
+    return budget
+
+
 def add_check(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     """`check`: the controller alone."""
     check = commands.add_parser("check", help="check a program without machine and metal")

@@ -6,7 +6,7 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from twin.cli.arguments import add_check, add_explain, add_inspect, add_new, add_run
+from twin.cli.arguments import add_budget, add_check, add_explain, add_inspect, add_new, add_run
 from twin.errors import ExitCode, HobtwinError
 
 
@@ -68,6 +68,7 @@ def _parser() -> argparse.ArgumentParser:
         (add_inspect, _inspect),
         (add_explain, _explain),
         (add_new, _new),
+        (add_budget, _budget),
     ):
         add(commands).set_defaults(command=command)
     return parser
@@ -77,6 +78,12 @@ def _run(options: argparse.Namespace) -> ExitCode:
     from twin.cli.run import run_command  # noqa: PLC0415
 
     return run_command(options)
+
+
+def _budget(options: argparse.Namespace) -> ExitCode:
+    from twin.cli.budget import budget_command  # noqa: PLC0415
+
+    return budget_command(options)
 
 
 def _check(options: argparse.Namespace) -> ExitCode:

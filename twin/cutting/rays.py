@@ -33,6 +33,20 @@ def crossings(fields: tuple[Field, ...], points: Floats, along: Floats, *, reach
     return np.concatenate([np.zeros(0), *parts])
 
 
+def depths(fields: tuple[Field, ...], points: Floats) -> Floats:
+    """How deep (n,) points (n, 3) lie inside everything that is cut away [mm]; −inf where no tool comes."""
+
+    def work(part: slice) -> Floats:
+        pairs = _near(fields, points[part], 0.0)
+        depth, _ = pairs.meet(points[part], np.zeros(len(points[part])))
+        deepest = np.full(len(points[part]), -np.inf)
+        np.maximum.at(deepest, pairs.row, depth)
+        return deepest
+
+    slices = (slice(first, first + GROUP) for first in range(0, len(points), GROUP))
+    return np.concatenate([np.zeros(0), *in_parallel(work, slices)])
+
+
 class _Pairs:
     """Rays of a group, each with passes that can make the surface on it."""
 
