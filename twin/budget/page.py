@@ -25,7 +25,7 @@ def render(budget: Budget) -> str:
         process=_cells(budget, budget.ideal),
         rows=rows,
         allowed=[_number(budget.tolerances.get(item.key)) for item in ITEMS],
-        advice=advice(budget),
+        advice=[_sentence(said) for said in advice(budget)],
         picture=_picture(budget),
     )
 
@@ -54,13 +54,24 @@ def _cells(budget: Budget, values: Values) -> list[dict[str, object]]:
 
 
 def _number(value: float | None) -> str:
-    return "—" if value is None else f"{value:.2f}" if abs(value) < 10 else f"{value:.1f}"
+    if value is None:
+        return "—"
+    return (f"{value:.2f}" if abs(value) < 10 else f"{value:.1f}").replace("-", "−")
 
 
 def _lowered(symbol: str) -> Markup:
     """The part behind `_` stands lower."""
     head, _, low = symbol.partition("_")
     return Markup(f"{escape(head)}<sub>{escape(low)}</sub>") if low else Markup(escape(head))
+
+
+def _sentence(said: str) -> Markup:
+    """A sentence with a capital letter, a full stop, and the symbols in it set."""
+    text = str(escape(f"{said[0].upper()}{said[1:]}."))
+    for item in ITEMS:
+        text = text.replace(f" {item.symbol},", f" {_lowered(item.symbol)},")
+        text = text.replace(f" {item.symbol}.", f" {_lowered(item.symbol)}.")
+    return Markup(text)
 
 
 def _picture(budget: Budget) -> Markup:
@@ -79,7 +90,7 @@ def _picture(budget: Budget) -> Markup:
         parts.append(
             f'<rect x="{LEFT:g}" y="{y + 6:g}" width="{max(length, 1.0):.1f}" height="18" class="{css}"/>'
         )
-        parts.append(f'<text x="{LEFT + max(length, 1.0) + 8:.1f}" y="{y + 19:g}">{escape(figure)}</text>')
+        parts.append(f'<text x="{LEFT + max(length, 1.0) + 8:.1f}" y="{y + 19:g}">{figure}</text>')
     if budget.tolerances:
         x = LEFT + BAR / longest
         parts.append(
@@ -97,7 +108,8 @@ def _figure(budget: Budget, share: Share, item: str, weight: float, symbol: str)
     value = share.values.get(item)
     if value is None or not symbol:
         return "nothing"
-    said = f"{symbol.replace('_', ' ')} {abs(value):.2f} µm"
+    head, _, low = symbol.partition("_")
+    said = f'{head}<tspan dy="3" font-size="11">{low}</tspan><tspan dy="-3"> {abs(value):.2f} µm</tspan>'
     return f"{said}, {100 * weight:.0f} %" if budget.tolerances else said
 
 
