@@ -1,0 +1,1 @@
+"""Form grinding of pre-cut gears, one gap after the other (geometry.md 4)."""

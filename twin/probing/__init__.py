@@ -1,0 +1,1 @@
+"""Clamping eccentricity, measured by touch and compensated (CN102814557B as mended in the rulings)."""
