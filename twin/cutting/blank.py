@@ -1,4 +1,4 @@
-"""The blank: a turned body about the z axis."""
+"""The blank: a turned body about the z axis, which may have been cut before."""
 
 import math
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.cutting.section import Section
 from twin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -25,6 +26,8 @@ class Blank:
     bore_mm: float = 0.0
     profile: tuple[tuple[float, float], ...] | None = None
     """(z, diameter) [mm] of its steps, cones and chamfers from the front face on; None = a cylinder"""
+    section: Section | None = None
+    """of a blank that has gaps already; None = it is round"""
 
     def __post_init__(self) -> None:
         sizes = self.diameter_mm, self.length_mm, self.bore_mm
@@ -68,7 +71,8 @@ class Blank:
         """Whether points (n, 3) lie strictly inside."""
         r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
         low, high = self.z_range
-        return (r < self.outer_radius(z)) & (2.0 * r > self.bore_mm) & (z > low) & (z < high)
+        inside = (r < self.outer_radius(z)) & (2.0 * r > self.bore_mm) & (z > low) & (z < high)
+        return inside if self.section is None else inside & self.section.contains(points)
 
     def _check(self, profile: tuple[tuple[float, float], ...]) -> None:
         if len(profile) < 2:

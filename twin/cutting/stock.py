@@ -21,7 +21,8 @@ CHORD = 2.5e-4
 
 def blank_solid(blank: Blank) -> manifold3d.Manifold:
     """The blank with facets within CHORD of its circles, vertices on them."""
-    return lathe(blank.outline(), math.ceil(math.pi / math.acos(1.0 - CHORD / blank.radius)))
+    turned = lathe(blank.outline(), math.ceil(math.pi / math.acos(1.0 - CHORD / blank.radius)))
+    return turned if blank.section is None else turned ^ solid(*blank.section.mesh(*blank.z_range))
 
 
 def lathe(outline: Floats, segments: int) -> manifold3d.Manifold:

@@ -15,7 +15,9 @@ from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
 from twin.faults.hob_errors import hob_errors
+from twin.faults.table import Faults
 from twin.faults.table import Faults, SlideTilt
+from twin.grinding.wheel import GapWheel
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.job.expect import Expectation, read_expectations
 from twin.job.locate import line_of
@@ -33,7 +35,12 @@ from twin.job.schema import (
 
 T = TypeVar("T")
 
-TOOLS: Mapping[str, type] = {"hob": Hob, "polygon_head": PolygonHead, "disc_wheel": DiscWheel}
+TOOLS: Mapping[str, type] = {
+    "hob": Hob,
+    "polygon_head": PolygonHead,
+    "disc_wheel": DiscWheel,
+    "gap_wheel": GapWheel,
+}
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
 TABLES = (
     "machine",
@@ -105,15 +112,17 @@ class _Reader:
         folder = self.file.resolve().parent
         work = self._work()
         tools = self._tools()
+        nominal = self._nominal(work, tools)
+        work = self._precut(work, nominal)
         job = Job(
             name=folder.name,
             path=self.file,
             machine=self._table(MachineTable, ("machine",)),
             work=work,
             setup=self._setup(),
-            tools=tools,
+            tools=self._dressed(tools, nominal),
             program=self._program(),
-            nominal=self._nominal(work, tools),
+            nominal=nominal,
             inspection=self._table(InspectionTable, ("inspection",)),
             faults=self._faults(tools),
             events=self._events(),
@@ -137,11 +146,39 @@ class _Reader:
         raw = self._raw(("work",))
         work = self._converted(WorkTable, {**_size(raw.get("profile")), **raw}, ("work",))
         try:
-            work.blank()
+            dataclasses.replace(work, gear=None).blank()
         except InputError as cause:
             key = "profile" if "profile" in raw else "bore_mm"
             self._fail(("work", key), cause.text, cause.remedy.removeprefix("valid: "))
         return work
+
+    def _precut(self, work: WorkTable, nominal: Nominal | None) -> WorkTable:
+        """The blank's own gaps, completed by the nominal."""
+        if work.gear is None:
+            return work
+        if isinstance(nominal, GearNominal):
+            work = dataclasses.replace(work, gear=work.gear.completed(nominal))
+        try:
+            work.blank()
+        except InputError as cause:
+            self._fail(("work", "gear"), f"work.gear: {cause.text}", cause.remedy.removeprefix("valid: "))
+        return work
+
+    def _dressed(self, tools: dict[int, Tool | GapWheel], nominal: Nominal | None) -> dict[int, Tool]:
+        """Wheels dressed for the nominal's gaps."""
+        done: dict[int, Tool] = {}
+        for number, tool in tools.items():
+            if not isinstance(tool, GapWheel):
+                done[number] = tool
+                continue
+            path = ("tools", str(number)) if number else ("tool",)
+            if not isinstance(nominal, GearNominal):
+                self._fail(path, "a gap_wheel needs a gear to be dressed for", '[nominal] kind = "gear"')
+            try:
+                done[number] = tool.dressed(nominal)
+            except InputError as cause:
+                self._fail(path, f"{'.'.join(path)}: {cause.text}", cause.remedy.removeprefix("valid: "))
+        return done
 
     def _setup(self) -> SetupTable:
         raw = self._raw(("setup",))
@@ -151,13 +188,13 @@ class _Reader:
             table = dataclasses.replace(table, reference=self._table(Reference, ("setup", "reference")))
         return table
 
-    def _tools(self) -> dict[int, Tool]:
+    def _tools(self) -> dict[int, Tool | GapWheel]:
         if ("tool" in self.data) == ("tools" in self.data):
             self._fail((), "a job needs either [tool] or [tools.1], [tools.2], …")
         if "tool" in self.data:
             return {0: self._tagged(TOOLS, ("tool",))}
         numbered = self._raw(("tools",))
-        tools: dict[int, Tool] = {}
+        tools: dict[int, Tool | GapWheel] = {}
         for name in numbered:
             if not re.fullmatch(r"[1-9]\d?", name):
                 self._fail(("tools", name), f"tools.{name} is no tool number", "1 to 99")
@@ -198,7 +235,7 @@ class _Reader:
             self._fail(("program", "file"), f"there is no program {name!r} beside the job")
         return path
 
-    def _nominal(self, work: WorkTable, tools: dict[int, Tool]) -> Nominal | None:
+    def _nominal(self, work: WorkTable, tools: dict[int, Tool | GapWheel]) -> Nominal | None:
         if "nominal" not in self.data:
             return None
         nominal: Nominal = self._tagged(NOMINALS, ("nominal",))

@@ -13,6 +13,7 @@ from twin.cutters.polygon_head import PolygonHead
 from twin.cutting.blank import Blank
 from twin.errors import Place
 from twin.faults.table import Faults
+from twin.grinding.precut import PrecutGear
 from twin.inspection.nominal import Nominal
 from twin.job.expect import Expectation
 from twin.job.locate import line_of
@@ -58,6 +59,8 @@ class WorkTable:
     bore_mm: NotNegative = 0.0
     profile: tuple[tuple[float, float], ...] | None = None
     """[[z, diameter], …] of steps, cones and chamfers, from the front face (z = 0) on"""
+    gear: PrecutGear | None = None
+    """gaps that were cut before; None = a turned blank"""
     material: str = "16MnCr5"
     clamping: Literal["arbor", "chuck"] = "arbor"
     arbor_diameter_mm: Positive | None = None
@@ -72,6 +75,7 @@ class WorkTable:
             length_mm=self.length_mm,
             bore_mm=self.bore_mm,
             profile=self.profile,
+            section=self.gear.section(self.diameter_mm / 2.0) if self.gear else None,
         )
 
 

@@ -1,0 +1,71 @@
+"""A blank with a transverse section of its own, the same at every height but for its turn: a pre-cut gear."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+BEYOND = 1.0
+"""[mm] that its solid goes on beyond the blank's ends"""
+CHORD = 1e-4
+"""[mm] that facets may lie inside its helices"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Section:
+    """What a blank may fill at most, besides its turned outline."""
+
+    outline: Floats
+    """(n, 2) corners at height 0 [mm], counter-clockwise about the axis, each direction met once"""
+    twist: float
+    """turn of the section per height [rad/mm], + right-hand"""
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for an outline that does not go around the axis once."""
+        steps = np.diff(np.unwrap(np.arctan2(self.outline[:, 1], self.outline[:, 0])))
+        if len(self.outline) < 3 or not (steps > 0).all() or steps.sum() >= 2.0 * math.pi:
+            raise ValueError("a section's outline goes around the axis once, counter-clockwise")
+
+    def contains(self, points: Floats) -> NDArray[np.bool_]:
+        """Whether points (n, 3) lie strictly inside, at whatever height."""
+        x, y = self.outline.T
+        start = np.arctan2(y[0], x[0])
+        angle = (np.arctan2(points[:, 1], points[:, 0]) - self.twist * points[:, 2] - start) % (2 * math.pi)
+        around = (np.arctan2(y, x) - start) % (2.0 * math.pi)
+        k = np.searchsorted(around, angle, side="right") - 1
+        ahead = (k + 1) % len(x)
+        here = np.hypot(points[:, 0], points[:, 1])[:, None] * np.stack(
+            [np.cos(angle + start), np.sin(angle + start)], axis=1
+        )
+        way, off = self.outline[ahead] - self.outline[k], here - self.outline[k]
+        return way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0] > 0.0
+
+    def mesh(self, z_low: float, z_high: float) -> tuple[Floats, Ints]:
+        """Closed mesh of its prism from BEYOND under `z_low` to BEYOND over `z_high`."""
+        low, high = z_low - BEYOND, z_high + BEYOND
+        reach = float(np.hypot(*self.outline.T).max())
+        step = math.sqrt(8.0 * CHORD / reach) / abs(self.twist) if self.twist else math.inf
+        layers = np.linspace(low, high, max(math.ceil((high - low) / step), 1) + 1)
+        turn = np.exp(1j * self.twist * layers)[:, None] * (self.outline @ [1.0, 1j])
+        n, last = len(self.outline), len(layers) - 1
+        heights = np.repeat(layers, n)
+        vertices = np.column_stack([turn.real.ravel(), turn.imag.ravel(), heights])
+        vertices = np.vstack([vertices, [[0.0, 0.0, low], [0.0, 0.0, high]]])
+        i = np.arange(n)
+        j = (i + 1) % n
+        base = n * np.arange(last)[:, None]
+        a, b, c, d = (side.ravel() for side in (base + i, base + j, base + n + j, base + n + i))
+        bottom, top = np.full(n, n * (last + 1)), np.full(n, n * (last + 1) + 1)
+        faces = np.concatenate(
+            [
+                np.stack([a, b, c], axis=1),
+                np.stack([a, c, d], axis=1),
+                np.stack([j, i, bottom], axis=1),
+                np.stack([n * last + i, n * last + j, top], axis=1),
+            ]
+        )
+        return vertices, faces
