@@ -1,7 +1,7 @@
 """Any motion, any tools: the quick way where it is proved to be right, the general way everywhere else."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from twin.cutting.refine import refine
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.regular import regular_cut
 from twin.cutting.stock import Remains, subtract
+from twin.cutting.strokes import Strokes, find_strokes
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -27,6 +28,8 @@ Progress = Callable[[str, float], None]
 
 CRUMB = 1e-6
 """[mm³] below which a severed piece is rounding"""
+FORMED_ERROR = 0.5
+"""[µm] off the envelope from which a cut is not one of strokes along gaps"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,8 +74,12 @@ def cut(
     closest = min(_closest(c, m) for c, m in tools)
     cutters = [c for c, _ in tools]
     grid = plan_grid(blank, cutters, closest=closest, cell_mm=cell_mm, tolerance_um=tolerance_um)
-    sweep = Sweep(tuple(tool_field(c, m, grid.hull_radius, grid.z_range) for c, m in tools))
     notes = [*_rubbing(blank, tools)]
+    formed = _formed(blank, tools, grid.cell_mm[0])
+    if formed is not None:
+        progress("done", 1.0)
+        return replace(formed, notes=(*notes, *formed.notes))
+    sweep = Sweep(tuple(tool_field(c, m, grid.hull_radius, grid.z_range) for c, m in tools))
     if sweep.passes == 0:
         return _uncut(blank, (*notes, "no edge ever swung past the blank: nothing was cut"))
     progress("searching the cut surface", 0.1)
@@ -89,12 +96,8 @@ def cut(
         surface, errors, facets = made.surface, made.errors, made.facets
         notes += made.notes
     progress("cutting the blank", 0.9)
-    remains = subtract(blank, surface)
-    severed = [volume for volume in remains.loose_volumes_mm3 if volume > CRUMB]
-    if severed:
-        notes.append(
-            f"{len(severed)} severed piece(s), the largest of {severed[0]:.3g} mm³, fell off the part"
-        )
+    remains = subtract(blank, *([surface] if surface else []))
+    notes += _severed(remains)
     progress("done", 1.0)
     return CutResult(
         remains=remains,
@@ -143,6 +146,37 @@ def _general(blank: Blank, sweep: Sweep, grid: Grid, closest: float, progress: P
     return _Made(surface, errors, facets, leaves.pairs, notes)
 
 
+def _severed(remains: Remains) -> list[str]:
+    """What to say of pieces that fell off."""
+    volumes = [volume for volume in remains.loose_volumes_mm3 if volume > CRUMB]
+    if not volumes:
+        return []
+    return [f"{len(volumes)} severed piece(s), the largest of {volumes[0]:.3g} mm³, fell off the part"]
+
+
+def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: float) -> CutResult | None:
+    """The cut by strokes of wheels along whole gaps; None where it is something else, or does not hold."""
+    found: list[Strokes] = []
+    for cutter, motion in tools:
+        strokes = find_strokes(blank, cutter, motion, cell)
+        if strokes is None or strokes.vertices.largest_um > FORMED_ERROR:
+            return None
+        found.append(strokes)
+    tubes = [tube for strokes in found for tube in strokes.tubes]
+    remains = subtract(blank, *tubes)
+    return CutResult(
+        remains=remains,
+        method="strokes of a wheel (rays in transverse planes)",
+        cell_mm=(0.5 * cell, 0.5 * cell, cell),
+        passes=len(tubes),
+        pairs=sum(len(tube.vertices) for tube in tubes),
+        checked=sum(len(strokes.vertices.distance) for strokes in found),
+        largest_error_um=max(strokes.vertices.largest_um for strokes in found),
+        facet_error_um=max(strokes.facets.largest_um for strokes in found),
+        notes=(*(note for one in found for note in coarse(one.vertices, one.facets)), *_severed(remains)),
+    )
+
+
 def _rubbing(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> list[str]:
     """What to say of tools that stand still in the stock while it moves."""
     ways = [scraped(c, m, StockCylinder.around(m.mount, blank.radius, blank.z_range)) for c, m in tools]
@@ -157,7 +191,7 @@ def _rubbing(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> li
 def _uncut(blank: Blank, notes: tuple[str, ...]) -> CutResult:
     """The blank as it was."""
     return CutResult(
-        remains=subtract(blank, None),
+        remains=subtract(blank),
         method="none",
         cell_mm=(0.0, 0.0, 0.0),
         passes=0,

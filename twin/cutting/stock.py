@@ -78,10 +78,11 @@ class Remains:
     genus: int
 
 
-def subtract(blank: Blank, surface: Surface | None) -> Remains:
-    """One boolean: the blank without the removed solid. The largest piece is the part."""
+def subtract(blank: Blank, *surfaces: Surface) -> Remains:
+    """One boolean: the blank without the removed solids. The largest piece is the part."""
     whole = blank_solid(blank)
-    left = whole if surface is None else whole - solid(surface.vertices, surface.faces)
+    removed = [solid(surface.vertices, surface.faces) for surface in surfaces]
+    left = manifold3d.Manifold.batch_boolean([whole, *removed], manifold3d.OpType.Subtract)
     if left.is_empty():
         raise PartError(
             "nothing is left of the blank", remedy="the cut removes all of it; check X and the tool"
