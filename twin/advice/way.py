@@ -7,6 +7,7 @@ from twin.advice.advice import Advice
 from twin.advice.gear_law import cutting_speed
 from twin.advice.kinds import Kind
 from twin.advice.moment import Moment
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 
 SLOWEST, FASTEST = 20.0, 280.0
@@ -21,6 +22,8 @@ def judge_way(moment: Moment) -> Iterator[Advice]:
     depth = f"{moment.cut_depth:.3f} mm into the stock"
     if moment.rapid:
         yield Advice(kind=Kind.RAPID, found=f"the tool {depth}", span=span, value=moment.cut_depth)
+    elif moment.gear is None and isinstance(moment.mounted.tool, DiscWheel):
+        return  # a wheel grinds gap after gap, the work stands still
     elif moment.gear is None:
         yield Advice(kind=Kind.OUT_OF_SYNC, found=f"the tool {depth}", span=span, value=moment.cut_depth)
     elif rpm == 0.0:

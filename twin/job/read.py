@@ -15,7 +15,6 @@ from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.errors import HobtwinError, InputError, Place
 from twin.faults.hob_errors import hob_errors
-from twin.faults.table import Faults
 from twin.faults.table import Faults, SlideTilt
 from twin.grinding.wheel import GapWheel
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
@@ -201,7 +200,7 @@ class _Reader:
             tools[int(name)] = self._tagged(TOOLS, ("tools", name))
         return tools
 
-    def _faults(self, tools: dict[int, Tool]) -> Faults:
+    def _faults(self, tools: Mapping[int, Tool | GapWheel]) -> Faults:
         faults = self._table(Faults, ("faults",))
         hobs = [tool for tool in tools.values() if isinstance(tool, Hob)]
         raw = self._raw(("faults",))
