@@ -14,8 +14,8 @@ Ints = NDArray[np.int64]
 
 TABLE = 6000
 """points of the wheel's half-width over its radius"""
-STEP = 0.04
-"""[mm] between two instants: the wheel's rim rises by a millionth of a millimetre between them"""
+STEP = 0.01
+"""[mm] between two instants: the rim of a wheel of Ø 60 rises by 4e-7 mm between them"""
 LOOKS = 32
 """instants of a stroke at which a point is looked at before the deepest is searched between"""
 

@@ -32,7 +32,7 @@ OVER = 0.7
 """[mm] that a tube goes on beyond the faces of the toothed part"""
 DEEPEST = 0.25
 """[mm] above its deepest that a stroke may stand and still count as at depth"""
-NEARBY = 32
+NEARBY = 128
 """[samples] by which the deepest instant moves at most as a point moves along its ray"""
 ROUNDS = 14
 """halvings along a ray; the profile itself does the rest"""
