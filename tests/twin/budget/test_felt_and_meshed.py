@@ -1,4 +1,4 @@
-"""A part with every fault at once, felt by rays and, meshed, measured by the inspection: they say the same."""
+"""A part with every fault at once says the same felt by rays and, meshed, measured by the inspection."""
 
 import shutil
 from pathlib import Path
