@@ -25,6 +25,7 @@ from controller.motion.follow_type import follow_in
 from controller.motion.requests import Attendance, Reading, SkipWatch
 from controller.motion.sampling import engaged, geared, marked, setpoints
 from controller.operator.actions import OperatorEvent, check_events
+from controller.span import Span
 from controller.tables.alarms import ALARMS, Alarm, ControllerError
 from controller.tables.parameters import Parameters
 
@@ -165,7 +166,8 @@ class Controller:
             number = one.number if one.number in ALARMS else "HT9013"
             letter = f"{self.axes[one.axis]}: " if one.axis is not None else ""
             prefix = "" if number == one.number else f"{one.number} "
-            self._execution.halt(Alarm(number=number, found=f"{prefix}{letter}{one.found}"))
+            found = f"{prefix}{letter}{one.found}, at {self._tick / self._rate:.3f} s"
+            self._execution.halt(Alarm(number=number, found=found, span=self._place()))
             self._halted = True
         self._forget()
         return self._tell()
@@ -249,6 +251,15 @@ class Controller:
         self._plan(1)
         self._blocks.planned_anew(self._execution.log, now)
         self._told = min(self._told, sum(self._is_due(report) for report in self._execution.reports))
+
+    def _place(self) -> Span | None:
+        """The block of the last tick."""
+        blocks = self.blocks
+        if not blocks or not self._tick:
+            return None
+        (number,) = self._blocks.numbers(self._execution.log, np.array([self._tick / self._rate]))
+        block = blocks[min(int(number), len(blocks) - 1)]
+        return Span(file=block.file, line=block.line)
 
     def _forget(self) -> None:
         self._motion.timeline.forget(min(self._tick / self._rate, self._motion.time))

@@ -65,10 +65,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     with watch.measure("set-up"):
         cutters = cutters_of(job)
         settings = settings_of(job, cutters, events=options.events)
-        ready = make_ready(job, cutters)
-        require_analogue(ready, settings.parameters)
         program = load_program(job.program)
         foreseen, advice = advised_run(job, cutters, settings, program)
+        lowest = foreseen.extents["Z"].machine[0] if "Z" in foreseen.extents else 0.0
+        ready = make_ready(job, cutters, lowest_z_mm=lowest + job.setup.reference.Z)
+        require_analogue(ready, settings.parameters)
         cycle = foreseen.cycle_time_s
         blank = job.work.blank()
         # the cut says at once what it would need, not after the run

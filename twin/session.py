@@ -16,7 +16,7 @@ from twin.cutting.motion import CutterMotion
 from twin.errors import PartError
 from twin.faults.drives import misread
 from twin.kinematics import cutter_motion, part_frame
-from twin.machine import IdealMachine, MujocoMachine
+from twin.machine import Guarded, IdealMachine, MujocoMachine
 from twin.presets import ControllerSettings
 from twin.recording import BlockRef, Recording
 from twin.setup import MountedTool, Ready
@@ -96,7 +96,8 @@ def run_program(
     ideal: bool,
     progress: Callable[[float], None] = lambda _seconds: None,
 ) -> Session:
-    """Run a program on the machine as made ready, or on one whose axes follow their setpoints exactly."""
+    """Run a program on the machine as made ready, or on one whose axes follow their setpoints exactly; it
+    stops where its bodies collide."""
     controller = Controller(
         program,
         parameters=settings.parameters,
@@ -109,7 +110,8 @@ def run_program(
         machine: Machine = IdealMachine(len(controller.axes), settings.encoders)
     else:
         machine = MujocoMachine(misread(ready.tools[0].assembly, settings.encoders))
-    return record(controller, machine, ready, progress=progress)
+    guarded = Guarded(machine, ready.tools[0].assembly)
+    return record(controller, guarded, ready, progress=progress)
 
 
 def record(

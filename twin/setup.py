@@ -27,6 +27,12 @@ from twin.machine import (
     load_machine,
 )
 
+HEAD = 66.0
+"""Radius of the tool head about the tool's axis [mm]."""
+HEAD_BESIDE_CHUCK = 110.0
+"""How far along the tool's axis the head stands beside the chuck [mm]."""
+JAWS = 15.0
+"""By which the chuck's jaws stand before its face, and some air [mm]."""
 ARBOR = 0.6
 """Arbor diameter over root diameter where a job names none."""
 
@@ -55,10 +61,12 @@ class Ready:
     """of the tool spindle"""
 
 
-def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
+def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float = 0.0) -> Ready:
     """Mount work and tools, `cutters` by tool number.
 
-    Raises InputError where the job contradicts itself or the machine.
+    `lowest_z_mm`: how far the program takes the tool's centre towards the chuck, from the front face; a
+    stick-out that the job leaves open clears it. Raises InputError where the job contradicts itself or the
+    machine.
     """
     folder = job.model_folder.resolve()
     changes = Changes(table=job.machine.changes(), place=lambda path: job.place("machine", *path))
@@ -70,7 +78,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter]) -> Ready:
         diameter_mm=job.work.diameter_mm,
         length_mm=job.work.length_mm,
         arbor_diameter_mm=job.work.arbor_diameter_mm or ARBOR * _root_diameter(job),
-        stick_out_mm=job.work.stick_out_mm,
+        stick_out_mm=job.work.stick_out_mm or _stick_out(job, cutters, lowest_z_mm),
     )
     tools = []
     for number, cutter in cutters.items():
@@ -110,6 +118,17 @@ def require_analogue(ready: Ready, parameters: Parameters) -> None:
                 place=ready.spec.place_of(("drives", joint, "kind")),
                 remedy=f'parameters = {{ "9005#0.{letter}" = 1 }}, and for a gear box on it "201#7" = 1',
             )
+
+
+def _stick_out(job: Job, cutters: dict[int, Cutter], lowest_z_mm: float) -> float:
+    """Front face from the chuck's face: 80 mm behind the blank, or more where the tool goes further."""
+    reach = 0.0
+    for number, cutter in cutters.items():
+        across, along = abs(math.sin(cutter.swivel)), math.cos(cutter.swivel)
+        tool = cutter.radius * across + _length(job, job.tools[number]) / 2 * abs(along)
+        head = HEAD * across + HEAD_BESIDE_CHUCK * max(0.0, -along)
+        reach = max(reach, tool, head)
+    return max(job.work.length_mm + 80.0, -lowest_z_mm + reach + JAWS)
 
 
 def _root_diameter(job: Job) -> float:

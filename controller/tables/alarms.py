@@ -45,6 +45,7 @@ class AlarmEntry:
 
 _CLASS_OF = {
     "HT9013": AlarmClass.SERVO,
+    "HT9030": AlarmClass.SERVO,
     "PS": AlarmClass.PROGRAM,
     "HT": AlarmClass.PROGRAM,
     "OT": AlarmClass.OVERTRAVEL,
@@ -143,6 +144,7 @@ HT9014 | FORBIDDEN WITH THE INCLINED AXIS | parameter 8200#0 = 0
 HT9015 | TOO MANY REPETITIONS | a program whose loops and calls repeat less
 HT9016 | TOO MANY PASSES IN A CYCLE | a larger depth of cut
 HT9020 | THREAD TOO FAST FOR THE AXES | a lower spindle speed, or a smaller lead
+HT9030 | COLLISION | a path on which nothing but the cutter touches the work
 """
 
 _WARNINGS = """

@@ -8,6 +8,7 @@ from twin.machine.assembly import (
     assemble,
     hob_carrier_swivel,
 )
+from twin.machine.collisions import Guarded
 from twin.machine.drive import Drive, DriveKind
 from twin.machine.ideal import IdealMachine
 from twin.machine.physical import MujocoMachine
@@ -19,6 +20,7 @@ __all__ = [
     "Changes",
     "Drive",
     "DriveKind",
+    "Guarded",
     "IdealMachine",
     "MachineError",
     "MachineSpec",

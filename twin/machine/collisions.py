@@ -1,0 +1,141 @@
+"""Collisions of what moves with the tool against what stands and what turns with the work.
+
+What turns is given as bodies of revolution, so only slides change a distance, and no distance between two
+bodies changes faster than they slide: from a place with clearance d nothing can touch before they have slid
+by d. So a whole run takes some hundred distances, and the first tick that touches is found exactly.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+
+from dataclasses import dataclass
+
+import mujoco  # its bindings are compiled and carry no types
+import numpy as np
+
+from controller.clock import Chunk, Feedback, Floats, Load, Machine, MachineAlarm
+from twin.machine.assembly import Assembly
+
+MM = 1e-3
+FAR = 10.0
+"""[m] beyond which a distance need not be known"""
+CUTS = ("cutter", "blank")
+"""the one pair of bodies that is meant to meet"""
+
+
+@dataclass(slots=True, kw_only=True)
+class _Pair:
+    """Two shapes, and the last place of the slides at which their distance was looked up."""
+
+    moving: int
+    fixed: int
+    slides: Floats
+    """(axes, 3) travel of the moving shape per travel of an axis [m/mm]"""
+    place: Floats
+    """(3,) [m]"""
+    clearance: float = 0.0
+    """[m] at that place"""
+
+
+class Guarded:
+    """A machine that stops with an alarm at the first tick in which two of its bodies touch."""
+
+    def __init__(self, machine: Machine, assembly: Assembly) -> None:
+        self._machine = machine
+        self._model = assembly.model
+        self._data = mujoco.MjData(assembly.model)
+        self._qpos = [int(assembly.model.joint(j).qposadr[0]) for j in assembly.joints]
+        self._pairs = _pairs(assembly)
+
+    def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:
+        """Move along the chunk up to its end, or to the tick of the first collision."""
+        feedback = self._machine.advance(chunk, load)
+        hits = [
+            (tick, k)
+            for k, pair in enumerate(self._pairs)
+            if (tick := self._first_touch(pair, feedback.actual)) is not None
+        ]
+        if not hits:
+            return feedback
+        tick, k = min(hits)
+        ticks = tick + 1
+        return Feedback(
+            ticks=ticks,
+            setpoint=feedback.setpoint[:ticks],
+            actual=feedback.actual[:ticks],
+            measured=None if feedback.measured is None else feedback.measured[:ticks],
+            alarms=(MachineAlarm(number="HT9030", axis=None, found=self._words(self._pairs[k])),),
+        )
+
+    def rest(self, ticks: int) -> None:
+        """Let `ticks` pass in which nothing moves."""
+        self._machine.rest(ticks)
+
+    def _first_touch(self, pair: _Pair, actual: Floats) -> int | None:
+        """Row of (n, axes) positions in which the pair first touches."""
+        path = actual @ pair.slides
+        first = 0
+        while first < len(path):
+            moved = np.linalg.norm(path[first:] - pair.place, axis=1) >= pair.clearance
+            if not moved.any():
+                return None
+            first += int(np.argmax(moved))
+            pair.place = path[first]
+            pair.clearance = self._distance(pair, actual[first])
+            if pair.clearance <= 0.0:
+                return first
+            first += 1
+        return None
+
+    def _distance(self, pair: _Pair, axes: Floats) -> float:
+        """Distance [m] of the pair with the slides at (axes,) positions; spindles do not matter."""
+        slides = np.abs(pair.slides).any(axis=1)
+        self._data.qpos[self._qpos] = np.where(slides, axes * MM, 0.0)
+        mujoco.mj_kinematics(self._model, self._data)
+        return float(mujoco.mj_geomDistance(self._model, self._data, pair.moving, pair.fixed, FAR, None))
+
+    def _words(self, pair: _Pair) -> str:
+        names = [
+            self._model.body(self._model.geom_bodyid[g]).name.replace("_", " ")
+            for g in (pair.moving, pair.fixed)
+        ]
+        return f"{names[0]} touches {names[1]}"
+
+
+def _pairs(assembly: Assembly) -> list[_Pair]:
+    """Every shape that slides with every one that does not, but for neighbours and what is meant to cut."""
+    model = assembly.model
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    travel = [_travel(assembly, data, int(body)) for body in model.geom_bodyid]
+    pairs = []
+    for moving in range(model.ngeom):
+        for fixed in range(model.ngeom):
+            bodies = [int(model.geom_bodyid[g]) for g in (moving, fixed)]
+            names = tuple(model.body(b).name for b in bodies)
+            filtered = not (
+                model.geom_contype[moving] & model.geom_conaffinity[fixed]
+                or model.geom_contype[fixed] & model.geom_conaffinity[moving]
+            )
+            if (
+                filtered
+                or not travel[moving].any()
+                or travel[fixed].any()
+                or model.body_parentid[bodies[0]] == bodies[1]
+                or names == CUTS
+            ):
+                continue
+            pairs.append(_Pair(moving=moving, fixed=fixed, slides=travel[moving], place=np.zeros(3)))
+    return pairs
+
+
+def _travel(assembly: Assembly, data: mujoco.MjData, body: int) -> Floats:
+    """(axes, 3) how far a body goes per travel of every axis [m/mm]; nothing where an axis turns."""
+    model = assembly.model
+    travel = np.zeros((len(assembly.joints), 3))
+    while body > 0:
+        for k, name in enumerate(assembly.joints):
+            joint = model.joint(name)
+            if joint.bodyid[0] == body and joint.type[0] == mujoco.mjtJoint.mjJNT_SLIDE:
+                travel[k] = data.xaxis[joint.id] * MM
+        body = int(model.body_parentid[body])
+    return travel
