@@ -134,3 +134,13 @@ def add_new(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> 
     for part in (gear, polygon):
         part.add_argument("--out", type=Path, required=True, metavar="DIR", help="new or empty folder")
     return new
+
+
+def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+    """`bench`: how fast it is here."""
+    bench = commands.add_parser("bench", help="time a part of the twin; one JSON line")
+    bench.add_argument("what", choices=("kernel",), help="the cutting kernel, against booleans")
+    bench.add_argument(
+        "--case", default="spur_m2_z20_b20", metavar="NAME", help="a cut (default: spur_m2_z20_b20)"
+    )
+    return bench
