@@ -61,11 +61,11 @@ class Ready:
     """of the tool spindle"""
 
 
-def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float = 0.0) -> Ready:
+def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | None = None) -> Ready:
     """Mount work and tools, `cutters` by tool number.
 
-    `lowest_z_mm`: how far the program takes the tool's centre towards the chuck, from the front face; a
-    stick-out that the job leaves open clears it. Raises InputError where the job contradicts itself or the
+    `lowest_z_mm`: how far the program takes the tool's centre towards the chuck, from the front face, None =
+    a tool's radius behind the blank; a stick-out that the job leaves open clears it. Raises InputError where the job contradicts itself or the
     machine.
     """
     folder = job.model_folder.resolve()
@@ -120,8 +120,10 @@ def require_analogue(ready: Ready, parameters: Parameters) -> None:
             )
 
 
-def _stick_out(job: Job, cutters: dict[int, Cutter], lowest_z_mm: float) -> float:
+def _stick_out(job: Job, cutters: dict[int, Cutter], lowest_z_mm: float | None) -> float:
     """Front face from the chuck's face: 80 mm behind the blank, or more where the tool goes further."""
+    if lowest_z_mm is None:
+        lowest_z_mm = -job.work.length_mm - max(cutter.radius for cutter in cutters.values())
     reach = 0.0
     for number, cutter in cutters.items():
         across, along = abs(math.sin(cutter.swivel)), math.cos(cutter.swivel)
