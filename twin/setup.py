@@ -65,8 +65,9 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
     """Mount work and tools, `cutters` by tool number.
 
     `lowest_z_mm`: how far the program takes the tool's centre towards the chuck, from the front face, None =
-    a tool's radius behind the blank; a stick-out that the job leaves open clears it. Raises InputError where the job contradicts itself or the
-    machine.
+    a tool's radius behind the blank; a stick-out that the job leaves open clears it.
+
+    Raises InputError where the job contradicts itself or the machine.
     """
     folder = job.model_folder.resolve()
     changes = Changes(table=job.machine.changes(), place=lambda path: job.place("machine", *path))
