@@ -29,6 +29,8 @@ def standing_wheel(profile: ToothProfile) -> "PassingWheel":
         inside = profile.depth(middle, rho)[0] > 0.0
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
     low[-1] = low[-2]  # the land at the tip, on which no point is inside
+    # beyond the tip it goes on falling, so that the way back to the wheel is uphill from anywhere
+    rho, low = np.append(rho, 2.0 * profile.tip), np.append(low, low[-1] - profile.tip)
     nowhere = np.zeros((0, 3))
     return PassingWheel(profile=profile, centre=nowhere, axis=nowhere, rho=rho, half=low)
 
@@ -43,9 +45,9 @@ class PassingWheel:
     axis: Floats
     """(n, 3)"""
     rho: Floats
-    """(TABLE,) radii, ascending [mm]"""
+    """(t,) radii, ascending, the last beyond the tip [mm]"""
     half: Floats
-    """(TABLE,) half-widths there [mm]"""
+    """(t,) half-widths there, below 0 beyond the tip [mm]"""
 
     def along(self, motion: CutterMotion, run: tuple[int, int], radius: float) -> "PassingWheel":
         """The same wheel on a stretch of a motion, in steps of at most STEP past stock within `radius`."""

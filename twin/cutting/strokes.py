@@ -40,6 +40,8 @@ CHECKED = 300
 """vertices, and as many middles of facets, that are held against every instant of their stroke"""
 CORNER = 0.1
 """[rad] by which the wheel's outline turns at a corner, which has rays of its own"""
+POLISH = 3
+"""steps of Newton's method onto the profile"""
 BEHIND = (0.25, 0.6)
 """Shares of the rest of a ray at which the wheel must not be met again."""
 
@@ -180,8 +182,8 @@ def _directions(
     `height` is the tip's distance below the rays' beginning. Places on the wheel's outline are evenly spaced,
     up to between the blank's `radius` and the `outer` one of the beginning.
     """
-    depth = wheel.profile.tip - wheel.rho[::-1]
-    half = wheel.half[::-1]
+    depth = wheel.profile.tip - wheel.rho[-2::-1]
+    half = wheel.half[-2::-1]
     top = height - 0.5 * (outer - radius)
     keep = depth < top
     outline = np.column_stack([half[keep], depth[keep]])
@@ -228,7 +230,8 @@ def _ways_out(wheel: PassingWheel, fan: _Fan, sample: Ints) -> Floats | None:
 
 def _onto_outline(wheel: PassingWheel, points: Floats, rays: Floats, sample: Ints) -> Floats:
     """The points moved along their rays onto the profile itself, which the table follows nearly."""
-    for _ in range(3):
+    for _ in range(POLISH):
+        sample, _ = wheel.uphill(points, sample, NEARBY)
         away = points - wheel.centre[sample]
         axis = wheel.axis[sample]
         s, rho = wheel.seen(points, sample)
@@ -237,7 +240,7 @@ def _onto_outline(wheel: PassingWheel, points: Floats, rays: Floats, sample: Int
         outwards = (np.einsum("nx,nx->n", rays, away) - along * s) / rho
         slope = by_s * along + by_rho * outwards
         step = np.where(slope < -0.05, -depth / np.minimum(slope, -0.05), 0.0)
-        points = points + np.clip(step, -5e-3, 5e-3)[:, None] * rays
+        points = points + np.clip(step, -0.02, 0.02)[:, None] * rays
     return points
 
 
