@@ -92,6 +92,16 @@ def add_inspect(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
     inspect.add_argument("--sides", type=int)
     inspect.add_argument("--across-flats", type=float, metavar="MM")
     inspect.add_argument("--tolerance", metavar="h13", help="of the width across flats (default: h13)")
+    inspect.add_argument(
+        "--against", type=Path, metavar="MESH", help="compare with another mesh: surfaces and figures"
+    )
+    inspect.add_argument(
+        "--against-units", choices=("mm", "cm", "m", "um", "inch", "ft"), help="of that file"
+    )
+    inspect.add_argument(
+        "--tolerance-um", type=float, metavar="UM", help="a surface that differs by more is a finding"
+    )
+    inspect.add_argument("--report", type=Path, metavar="FILE", help="write the comparison as an HTML page")
     inspect.add_argument("--format", choices=("text", "json"), default="text")
     return inspect
 

@@ -2,29 +2,55 @@
 
 import argparse
 import json
+import math
 import re
 from pathlib import Path
 from typing import Literal
 
 from twin.errors import ExitCode, InputError, Place
+from twin.inspection.axis import straightened
 from twin.inspection.columns import csv_lines
 from twin.inspection.inspection import PRESSURE_DEG, inspect
 from twin.inspection.mesh_files import read_mesh
 from twin.inspection.nominal import TOLERANCE, GearNominal, Nominal, PolygonNominal
 from twin.inspection.result import Inspection, Verdict
 from twin.inspection.sheet import to_json
-from twin.inspection.solid import MeshError
+from twin.inspection.solid import Floats, Ints, MeshError, check_solid
 from twin.inspection.text import text_lines
 
+Mesh = tuple[Floats, Ints]
+COMPARISON_OPTIONS = ("against_units", "tolerance_um", "report")
+"""options that say more of --against"""
 GEAR_OPTIONS = ("helix", "profile_shift", "accuracy_class", "tip_diameter", "pin_diameter", "face_width")
 """options that say more of a gear named by --teeth and --module"""
 
 
 def inspect_command(options: argparse.Namespace) -> ExitCode:
     """Measure a mesh. Raises HobtwinError."""
+    _check_comparison(options)
     nominal = _nominal(options)
     teeth = _teeth(options.teeth_to_measure)
-    vertices, faces = read_mesh(options.mesh, options.units)
+    if options.against is not None:
+        return _compare(options, nominal, teeth)
+    _, found = _inspected(options.mesh, options.units, options, nominal, teeth)
+    if options.csv is not None:
+        _write_csv(options.csv, found)
+    if options.format == "json":
+        print(json.dumps(to_json(found), indent=2, ensure_ascii=False, allow_nan=False))
+    else:
+        print("\n".join(text_lines(found)))
+    unfit = found.verdict is Verdict.OUT or found.kind is None
+    return ExitCode.FINDING if unfit else ExitCode.FINE
+
+
+def _inspected(
+    path: Path,
+    units: str | None,
+    options: argparse.Namespace,
+    nominal: Nominal | None,
+    teeth: tuple[int, ...] | Literal["all"] | None,
+) -> tuple[Mesh, Inspection]:
+    vertices, faces = read_mesh(path, units)
     try:
         found = inspect(
             vertices,
@@ -35,15 +61,55 @@ def inspect_command(options: argparse.Namespace) -> ExitCode:
             own_axis=options.find_axis,
         )
     except MeshError as fault:
-        raise InputError(fault.text, place=Place(file=str(options.mesh)), remedy=fault.remedy) from fault
-    if options.csv is not None:
-        _write_csv(options.csv, found)
+        raise InputError(fault.text, place=Place(file=str(path)), remedy=fault.remedy) from fault
+    return (vertices, faces), found
+
+
+def _check_comparison(options: argparse.Namespace) -> None:
+    """Options that belong to --against alone, and what they may be."""
+    loose = [name for name in COMPARISON_OPTIONS if getattr(options, name) is not None]
+    if loose and options.against is None:
+        raise InputError(
+            f"--{loose[0].replace('_', '-')} belongs to a comparison", remedy="add --against MESH"
+        )
+    tolerance = options.tolerance_um
+    if tolerance is not None and not (math.isfinite(tolerance) and tolerance >= 0):
+        raise InputError(f"--tolerance-um {tolerance:g}", remedy="valid: from 0, for example 5")
+    if options.against is not None and options.csv is not None:
+        raise InputError("--csv writes the traces of one part", remedy="leave out --against")
+
+
+def _compare(
+    options: argparse.Namespace, nominal: Nominal | None, teeth: tuple[int, ...] | Literal["all"] | None
+) -> ExitCode:
+    """One mesh against another. Exit code 1 only where --tolerance-um is exceeded."""
+    from twin.comparison.compare import compare  # noqa: PLC0415 - a single mesh needs none of this
+    from twin.comparison.words import text_lines as comparison_lines  # noqa: PLC0415
+    from twin.comparison.words import to_json as comparison_json  # noqa: PLC0415
+
+    parts = []
+    for path, units in ((options.mesh, options.units), (options.against, options.against_units)):
+        mesh, found = _inspected(path, units, options, nominal, teeth)
+        solid = check_solid(*mesh)
+        parts.append((solid if found.axis is None else straightened(solid, found.axis), found))
+    comparison = compare(parts[0], parts[1])
+    if options.report is not None:
+        from twin.comparison.page import write_comparison  # noqa: PLC0415
+
+        write_comparison(options.report, comparison, parts[0][0], _names(options.mesh, options.against))
     if options.format == "json":
-        print(json.dumps(to_json(found), indent=2, ensure_ascii=False, allow_nan=False))
+        print(json.dumps(comparison_json(comparison), indent=2, ensure_ascii=False, allow_nan=False))
     else:
-        print("\n".join(text_lines(found)))
-    unfit = found.verdict is Verdict.OUT or found.kind is None
-    return ExitCode.FINDING if unfit else ExitCode.FINE
+        print("\n".join(comparison_lines(comparison, tolerance_um=options.tolerance_um)))
+        if options.report is not None:
+            print(f"report: {options.report}")
+    beyond = options.tolerance_um is not None and comparison.largest_um > options.tolerance_um
+    return ExitCode.FINDING if beyond else ExitCode.FINE
+
+
+def _names(a: Path, b: Path) -> tuple[str, str]:
+    """Of two files; with their folders where the names alone are the same."""
+    return (a.name, b.name) if a.name != b.name else (str(a), str(b))
 
 
 def _write_csv(path: Path, found: Inspection) -> None:

@@ -1,0 +1,1 @@
+"""Two parts against each other: where their surfaces differ, and which figures changed."""
