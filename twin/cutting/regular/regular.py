@@ -28,8 +28,8 @@ RIM = 1.5
 """Cells by which the charts reach out of the blank."""
 FINEST = 4e-3
 """Share of the tooth height below which no cell is chosen."""
-LIMIT = 2_500_000
-"""Cells beyond which a cut is left to the general way and its memory estimate."""
+LIMIT = 450_000
+"""Cells, of about 2 kB each at the peak, beyond which a cut is left to the general way."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ def regular_cut(
     length = stock.z_high - stock.z_low + 2.0 * along
     count = tiling.along * math.ceil(length / (along * tiling.along))
     if indexing.teeth * count * len(surface) > LIMIT:
-        raise IrregularError("too many cells")
+        raise IrregularError("more cells than the memory allows")
     middle = 0.5 * (stock.z_low + stock.z_high)
     z = middle + along * (np.arange(count + 1, dtype=np.float64) - 0.5 * count)
     chart = chart_along(frame, motion.mount, surface, z)
