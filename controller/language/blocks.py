@@ -9,7 +9,11 @@ from controller.language.families.call_blocks import (
 )
 from controller.language.families.feed_blocks import interpret_feed
 from controller.language.families.motion_blocks import interpret_motion
-from controller.language.families.offset_blocks import interpret_tool, interpret_work_offset
+from controller.language.families.offset_blocks import (
+    interpret_tool,
+    interpret_work_offset,
+    move_by_offset,
+)
 from controller.language.families.spindle_blocks import interpret_spindle, stop_spindle
 from controller.language.families.sync_blocks import interpret_sync
 from controller.tables.codes import G_CODES, Group
@@ -26,6 +30,8 @@ def interpret_block(draft: Draft, *, optional_stop: bool) -> None:
         interpret_work_offset(draft, before.codes[Group.WORK_OFFSET])
         interpret_spindle(draft)
         interpret_feed(draft, before.codes[Group.FEED])
+        if "T" in draft.block.words:
+            move_by_offset(draft)
         interpret_subprogram(draft)
         interpret_motion(draft)
         _finish_block(draft, optional_stop=optional_stop)

@@ -85,6 +85,8 @@ class Modal:
     """None: that of the mounted tool, until the first T"""
     tool_shift: Mapping[int, float] = field(default_factory=dict)
     """the tool offset as it was taken: column -> slide travel [mm | deg]"""
+    tool_moved: Mapping[int, float] = field(default_factory=dict)
+    """the part of it that the axes have moved by, as parameter 5002 says"""
     local_shift: Mapping[int, float] = field(default_factory=dict)
     """G52: column -> slide travel [mm | deg]"""
     single: SingleCycle = field(default_factory=SingleCycle)

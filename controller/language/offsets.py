@@ -42,6 +42,13 @@ class Offsets:
         letters = dict.fromkeys([*geometry, *wear])
         return _columns({k: geometry.get(k, 0.0) + wear.get(k, 0.0) for k in letters}, machine)
 
+    def moving_part(self, number: int, machine: MachineData) -> dict[int, float]:
+        """The part of a tool offset that moves the axes: wear unless LWT, geometry if LGT (Fanuc 5002)."""
+        parameters = machine.parameters
+        wear = {} if parameters.bit(5002, 2) else _columns(self.wear.get(number, {}), machine)
+        geometry = _columns(self.tool.get(number, {}), machine) if parameters.bit(5002, 4) else {}
+        return {k: wear.get(k, 0.0) + geometry.get(k, 0.0) for k in {**wear, **geometry}}
+
     def with_work(self, tenths: int, letter: str, value: float) -> "Offsets":
         """The same with one value of a work offset changed."""
         name = g_name(tenths)

@@ -86,6 +86,16 @@ _BIT_ROWS: tuple[tuple[int, bool, str, dict[int, str]], ...] = (
         {0: "DPI: a number without point counts 1 = units, 0 = increments"},
     ),
     (
+        5002,
+        False,
+        "Fanuc 5002",
+        {
+            2: "LWT: the wear of a tool offset by 0 = moving the axes, 1 = the zero point alone",
+            4: "LGT: the geometry of a tool offset by 0 = the zero point alone, 1 = moving the axes",
+            6: "LWM: that move is made 0 = in the block of the T, 1 = with the next absolute words",
+        },
+    ),
+    (
         8200,
         False,
         _INCLINED,

@@ -1,16 +1,17 @@
-"""T, G10, G50, G52, G54-G59: what moves zero points and not axes."""
+"""T, G10, G50, G52, G54-G59: what moves zero points, and the one move that comes of it."""
 
 from collections.abc import Mapping
 from dataclasses import replace
 
-from controller.commands import Command, SelectTool, SetCoordinates, ShiftCoordinates
+from controller.commands import Command, Move, SelectTool, SetCoordinates, ShiftCoordinates
 from controller.language.draft import Draft
+from controller.language.families.feed_blocks import feed_in_force
 from controller.language.lexer import Word
 from controller.language.offsets import LAST_TOOL_OFFSET
 from controller.motion.registers import modulo
 from controller.tables.codes import G_CODES, Group
 
-G10, G50, G52 = 100, 500, 520
+G00, G10, G50, G52 = 0, 100, 500, 520
 _TOOL_DIGITS = (3, 4)
 _GEOMETRY = 10_000
 """P of G10 for the geometry of a tool offset"""
@@ -26,7 +27,7 @@ def shift_between(old: Mapping[int, float], new: Mapping[int, float]) -> tuple[C
 
 
 def interpret_tool(draft: Draft) -> None:
-    """T: tool and offset, T0101. The offset moves the zero point, not the axes."""
+    """T: tool and offset, T0101. The offset moves the zero point; `move_by_offset` follows it."""
     word = draft.take("T")
     if word is None:
         return
@@ -40,6 +41,24 @@ def interpret_tool(draft: Draft) -> None:
     draft.commands.extend(shift_between(draft.modal.tool_shift, new))
     draft.modal = replace(draft.modal, tool=tool, tool_offset=offset, tool_shift=new)
     draft.commands.append(SelectTool(number=tool))
+
+
+def move_by_offset(draft: Draft) -> None:
+    """The move that a T causes: by the change of what parameter 5002 lets the axes follow.
+
+    At rapid under G00, else at the feed in force. With LWM, 5002#6 = 1, there is none: the next absolute
+    words take the offset along. Fanuc 5002.
+    """
+    if draft.modal.tool_offset is None or draft.machine.parameters.bit(5002, 6):
+        return
+    old, new = draft.modal.tool_moved, draft.offsets.moving_part(draft.modal.tool_offset, draft.machine)
+    change = {k: new.get(k, 0.0) - old.get(k, 0.0) for k in {**old, **new}}
+    travel = {k: value for k, value in change.items() if value}
+    draft.modal = replace(draft.modal, tool_moved=new)
+    if travel:
+        rapid = draft.modal.codes[Group.MOTION] == G00
+        feed = None if rapid else feed_in_force(draft, travel)
+        draft.commands.append(Move(absolute={}, incremental=travel, feed=feed, places={}))
 
 
 def interpret_work_offset(draft: Draft, before: int) -> None:

@@ -26,12 +26,49 @@ def test_work_offsets_by_g10(read) -> None:
     assert (reading.machine["X"], reading.machine["Z"], reading.absolute["Z"]) == (-70.0, 8.0, 3.0)
 
 
+@pytest.mark.parametrize(
+    ("parameters", "machine", "absolute"),
+    [
+        ({}, (99.0, 52.0), (80.0, 45.0)),
+        ({"5002#2": 1}, (100.0, 50.0), (81.0, 43.0)),
+        ({"5002#4": 1}, (119.0, 57.0), (100.0, 50.0)),
+        ({"5002#6": 1}, (100.0, 50.0), (81.0, 43.0)),
+    ],
+)
+def test_the_move_that_a_tool_offset_causes(read, parameters, machine, absolute) -> None:
+    """T with geometry X20 Z5 and wear X-1 Z2 at X100 Z50: 5002 says what the axes follow, by hand.
+
+    Delivered: the geometry moves the zero point, the wear the axes. LWT = 1 nothing moves, LGT = 1 both do,
+    LWM = 1 waits for the next words, which then reach X100 + 20 - 1 in any case.
+    """
+    offsets = Offsets(tool={1: {"X": 20.0, "Z": 5.0}}, wear={1: {"X": -1.0, "Z": 2.0}})
+    stops = read("G00 X100. Z50.\nT0101\nM30", offsets=offsets, parameters=parameters)
+    assert (stops.machine["X"], stops.machine["Z"]) == pytest.approx(machine, abs=1e-9)
+    assert (stops.absolute["X"], stops.absolute["Z"]) == pytest.approx(absolute, abs=1e-9)
+    goes_on = read("G00 X100. Z50.\nT0101\nX100. Z50.\nM30", offsets=offsets, parameters=parameters)
+    assert (goes_on.machine["X"], goes_on.machine["Z"]) == pytest.approx((119.0, 57.0), abs=1e-9)
+    back = read("G00 X100. Z50.\nT0101\nT0100\nM30", offsets=offsets, parameters=parameters)
+    assert (back.machine["X"], back.machine["Z"]) == pytest.approx((100.0, 50.0), abs=1e-9)
+
+
+def test_the_move_of_an_offset_at_feed_needs_one(read) -> None:
+    """Under G01 the offset is moved to at the feed in force."""
+    offsets = Offsets(wear={1: {"X": -1.0}})
+    text = "G98 G01 X100. F600.\nT0101\nM30"
+    assert [move.feed.value for move in read(text, offsets=offsets).of(Move)] == [10.0, 10.0]
+
+
 def test_tool_offsets_by_g10(read) -> None:
     """G10 P1 … P99 sets wear, P10001 … geometry; U W add; it counts from the next T on."""
     offsets = Offsets(tool={1: {"X": 10.0}})
     text = "T0101\nG10 P1 X-1. Z2.\nG10 P1 U.5\nG00 X0 Z0\nT0101\nG00 X0 Z0\nG10 P10001 X4.\nT0101\nX0\nM30"
     reading = read(text, offsets=offsets)
-    assert [move.absolute for move in reading.of(Move)] == [{0: 0.0, 1: 0.0}, {0: 0.0, 1: 0.0}, {0: 0.0}]
+    assert [move.absolute or move.incremental for move in reading.of(Move)] == [
+        {0: 0.0, 1: 0.0},
+        {0: -0.25, 1: 2.0},
+        {0: 0.0, 1: 0.0},
+        {0: 0.0},
+    ]
     shifts = [s.shift for s in reading.of(ShiftCoordinates)]
     assert shifts == [{0: 5.0}, {0: -0.25, 1: 2.0}, {0: -3.0, 1: 0.0}]
     assert (reading.machine["X"], reading.machine["Z"]) == (4.0 - 1.0 + 0.5, 2.0)
