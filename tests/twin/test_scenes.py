@@ -91,7 +91,7 @@ def test_a_polygon_scene_cuts_the_faces_of_its_ratio(tmp_path, scene, sides, fla
 
 
 def test_a_hob_shifted_without_its_turn_of_the_work_cuts_another_helix(tmp_path):
-    """6 mm of Y over 56 mm of Z: tan β' = tan β - 6/56, so that the right-hand helix is 14.4°, not 20°."""
+    """6 mm of Y over 56 mm of Z without the turn that belongs to them: the teeth lie on another helix."""
     code, found, _ = run(tmp_path, "inclined_shift_uncompensated", "--ideal", "--cell-mm", "0.4")
     assert code == 1
     assert found["verdict"] == "out"
