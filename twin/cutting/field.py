@@ -27,10 +27,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SETTLED = 1e-4
-"""Residual angle [rad] of the stock below which one linear step ends the search for the meeting instant: it
+"""Residual angle [rad] of stock and edge below which one linear step ends the search for the meeting instant: it
 leaves half the stock's acceleration over that angle, 1e-8 of the work radius."""
-FURTHEST = 2e-3
-"""[rad] by which the edge may still stand off the point then, however slow the stock."""
 STILL = 1e-30
 """[rad per sample] in place of no motion at all, to divide by"""
 STEEPEST = 0.63
@@ -414,4 +412,4 @@ def _settled(cutter: Cutter, passes: Passes) -> float:
     if not passes.count or passes.creep.any():
         return SETTLED
     ratio = float((passes.turn * cutter.lever(cutter.radius) + passes.slant).max())
-    return min(SETTLED / max(ratio, SETTLED), FURTHEST)
+    return SETTLED / max(ratio, 1.0)
