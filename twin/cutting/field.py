@@ -27,8 +27,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SETTLED = 1e-4
-"""Residual angle [rad] of stock and edge below which one linear step ends the search for the meeting instant: it
-leaves half the stock's acceleration over that angle, 1e-8 of the work radius."""
+"""Residual angle [rad] of stock and edge below which one linear step ends the search for the meeting
+instant: it leaves half the stock's acceleration over that angle, 1e-8 of the work radius."""
 STILL = 1e-30
 """[rad per sample] in place of no motion at all, to divide by"""
 STEEPEST = 0.63
