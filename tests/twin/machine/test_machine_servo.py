@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mounted import DELIVERED, EXACT, FRICTIONLESS, PERIOD, TOOL, WORK, X, Z, changed, machine
 from scipy.linalg import expm
 
 from controller.clock import Chunk, Feedback, Follow, Load, Machine, Watch, WatchKind
@@ -18,40 +19,10 @@ from twin.machine import (
     IdealMachine,
     MachineError,
     MachineSpec,
-    MujocoMachine,
     Setup,
-    ToolMount,
-    WorkMount,
-    assemble,
-    load_machine,
 )
 from twin.machine.loops import Loops
 from twin.machine.servo import tune
-
-DELIVERED = load_machine("hobbing_lathe")
-PERIOD = DELIVERED.control_period_s
-X, Z, TOOL, WORK = range(4)
-
-
-def drives_changed(spec: MachineSpec = DELIVERED, **changes: float) -> MachineSpec:
-    """The delivered machine with the same change made to every drive."""
-    return replace(spec, drives={j: replace(d, **changes) for j, d in spec.drives.items()})
-
-
-EXACT = drives_changed(encoder_counts=0.0)
-"""with encoders that read every position exactly"""
-FRICTIONLESS = drives_changed(EXACT, coulomb_friction=0.0, viscous_friction=0.0)
-
-
-def machine(spec: MachineSpec = DELIVERED, setup: Setup = Setup.HOBBING) -> MujocoMachine:
-    return MujocoMachine(
-        assemble(
-            spec,
-            setup,
-            work=WorkMount(diameter_mm=44.0, length_mm=20.0, arbor_diameter_mm=21.0),
-            tool=ToolMount(carrier_swivel_deg=90.0, radius_mm=35.0, length_mm=80.0, edges=12),
-        )
-    )
 
 
 def chunk_of(
@@ -119,7 +90,7 @@ def test_lag_at_constant_speed_is_that_of_the_position_loop(k_ff: float, spec: M
     """geometry.md, section 5: lag = (1 - k_ff) v / Kv, friction or not: the integrator carries it."""
     speeds = np.array([20.0, -8.0, 1800.0, -90.0])
     setpoint = np.column_stack([np.sign(v) * ramp(abs(v), 4.0 * abs(v), 3000) for v in speeds])
-    feedback = run(machine(drives_changed(spec, velocity_feedforward=k_ff)), setpoint)
+    feedback = run(machine(changed(spec, velocity_feedforward=k_ff)), setpoint)
     gains = np.array([spec.drives[j].position_gain for j in spec.setups[Setup.HOBBING]])
     lag = (feedback.setpoint - feedback.actual)[-500:]
     np.testing.assert_allclose(lag, np.tile((1 - k_ff) * speeds / gains, (500, 1)), rtol=1e-6, atol=1e-6)
@@ -134,7 +105,7 @@ def test_step_response_is_that_of_the_continuous_loop() -> None:
     """
     deviation = {}
     for period in (1e-4, 5e-5):
-        spec = drives_changed(FRICTIONLESS, velocity_feedforward=0.0, acceleration_feedforward=0.0)
+        spec = changed(FRICTIONLESS, velocity_feedforward=0.0, acceleration_feedforward=0.0)
         spec = replace(spec, control_period_s=period, physics_step_s=period)
         step = np.array([0.01, -0.02, 0.05, 0.02])  # small enough for the force limits
         ticks = np.rint(0.002 * np.arange(1, 196) / period).astype(int)
@@ -163,7 +134,7 @@ def test_step_response_is_that_of_the_continuous_loop() -> None:
 def test_stability_map_predicts_the_physics(setup: Setup) -> None:
     """`Loops` against MuJoCo from the same start: small, frictionless, two physics steps a period."""
     spec = replace(
-        drives_changed(FRICTIONLESS, velocity_feedforward=0.0, acceleration_feedforward=0.0),
+        changed(FRICTIONLESS, velocity_feedforward=0.0, acceleration_feedforward=0.0),
         physics_step_s=PERIOD / 2,
     )
     driven = machine(spec, setup)
@@ -263,7 +234,7 @@ def test_follower_lags_its_measured_master_as_theory_says(k_ff: float) -> None:
     """geometry.md, section 5, follow type: own lag (1 - k_ff) w_C / Kv_C behind the measured hob."""
     setpoint = np.zeros((4000, 4))
     setpoint[:, TOOL] = ramp(3600.0, 7200.0, 4000)
-    spec = drives_changed(EXACT, velocity_feedforward=k_ff)
+    spec = changed(EXACT, velocity_feedforward=k_ff)
     feedback = run(machine(spec), setpoint, couplings=(FOLLOWER,))
     wanted = 1.25 + 3 * feedback.actual[:, TOOL] / 41
     np.testing.assert_array_equal(feedback.setpoint[:, WORK], wanted)
@@ -417,4 +388,4 @@ def test_unstable_gains_are_refused_with_the_limit_that_separates_them() -> None
 
 def test_an_unstable_velocity_loop_is_refused() -> None:
     with pytest.raises(InputError, match="x_slide: the velocity loop is unstable"):
-        machine(drives_changed(velocity_gain=4000.0))
+        machine(changed(DELIVERED, velocity_gain=4000.0))
