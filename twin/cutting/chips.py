@@ -66,6 +66,26 @@ class Chips:
 
 
 @dataclass(frozen=True, slots=True)
+class Removed:
+    """Pieces of rings, each with the bite that was the first to remove it."""
+
+    ring: Ints
+    """(n,)"""
+    start: Floats
+    """(n,) [rad]"""
+    width: Floats
+    """(n,) [rad]"""
+    bite: Ints
+    """(n,) numbered through all tools"""
+    instant: Floats
+    """(n,) sample of the bite's motion at which it passes the middle of its interval"""
+
+    def volume(self, rings: Rings) -> Floats:
+        """(n,) that the pieces stand for [mm³]."""
+        return rings.weight.reshape(-1)[self.ring] * self.width
+
+
+@dataclass(frozen=True, slots=True)
 class _Shares:
     """Pieces of intervals that were the first to be removed."""
 
@@ -123,8 +143,11 @@ def _step(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], resoluti
     return resolution
 
 
-def _shares(sweep: Sweep, rings: Rings, found: Intervals, step: float) -> _Shares:
-    """What of the intervals was still there: on each ring the later ones are painted over by the earlier."""
+def removed(sweep: Sweep, rings: Rings, found: Intervals, longest: float) -> Removed:
+    """What of the intervals was still there, in pieces of arc no longer than `longest` [mm].
+
+    On each ring the later ones are painted over by the earlier.
+    """
     order = np.lexsort((-pass_order(sweep, found.bite), found.ring))
     ring = found.ring[order]
     bounds = np.concatenate([[0], np.flatnonzero(np.diff(ring)) + 1, [len(ring)]])
@@ -142,24 +165,25 @@ def _shares(sweep: Sweep, rings: Rings, found: Intervals, step: float) -> _Share
     none = np.zeros(0)
     owner = np.concatenate([none.astype(np.int64), *owners])
     start, end = np.concatenate([none, *starts]), np.concatenate([none, *ends])
-    # long ones in parts, so that their feet lie close along the edge
     radius = rings.radius[found.ring[owner] // len(rings.height)]
-    parts = np.maximum(np.ceil((end - start) * radius / (2.0 * step)).astype(np.int64), 1)
+    parts = np.maximum(np.ceil((end - start) * radius / longest).astype(np.int64), 1)
     number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
     wide = np.repeat((end - start) / parts, parts)
     owner, start = np.repeat(owner, parts), np.repeat(start, parts) + number * wide
-    ring, bite = found.ring[owner], found.bite[owner]
-    met = [sweep.evaluate(rings.points(ring, start + share * wide), bite) for share in (0.0, 0.5, 1.0)]
+    return Removed(found.ring[owner], start, wide, found.bite[owner], found.instant[owner])
+
+
+def _shares(sweep: Sweep, rings: Rings, found: Intervals, step: float) -> _Shares:
+    """What each bite was the first to remove, and where on its edge: pieces short enough that their feet lie
+    close along it."""
+    part = removed(sweep, rings, found, 2.0 * step)
+    met = [
+        sweep.evaluate(rings.points(part.ring, part.start + share * part.width), part.bite)
+        for share in (0.0, 0.5, 1.0)
+    ]
     height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
-    foot, slope = _foot(sweep, met[1], bite)
-    return _Shares(
-        bite,
-        rings.weight.reshape(-1)[ring] * wide,
-        height,
-        found.instant[owner],
-        foot,
-        slope,
-    )
+    foot, slope = _foot(sweep, met[1], part.bite)
+    return _Shares(part.bite, part.volume(rings), height, part.instant, foot, slope)
 
 
 def _painted(own: Ints, start: Floats, end: Floats) -> tuple[Ints, Floats]:
@@ -185,7 +209,7 @@ def _painted(own: Ints, start: Floats, end: Floats) -> tuple[Ints, Floats]:
     return owner, edges
 
 
-def _of_stretch(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
+def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
     """The stretch of each bite (n,), and its number within it."""
     first = np.cumsum([0, *(field.count for field in sweep.fields)])
     stretch = np.searchsorted(first[1:], bite, side="right")
@@ -194,7 +218,7 @@ def _of_stretch(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
 
 def _foot(sweep: Sweep, meeting: Meeting, bite: Ints) -> tuple[Floats, Floats]:
     """The points (n, 2) of the edge that are nearest to places above it, and `_Shares.slope` there."""
-    stretch, own = _of_stretch(sweep, bite)
+    stretch, own = stretch_of(sweep, bite)
     foot, slope = np.zeros((len(bite), 2)), np.ones(len(bite))
     for n, field in enumerate(sweep.fields):
         here = np.flatnonzero(stretch == n)
@@ -216,7 +240,7 @@ def _summed(
     )
     height = np.concatenate([np.zeros((0, 3)), *(s.height for s in shares)])
     foot = np.concatenate([np.zeros((0, 2)), *(s.foot for s in shares)])
-    stretch, own = _of_stretch(sweep, bite)
+    stretch, own = stretch_of(sweep, bite)
     turn, tooth, time = np.zeros_like(own), np.zeros_like(own), np.zeros(len(own))
     for n, (field, (_, motion)) in enumerate(zip(sweep.fields, tools, strict=True)):
         here = np.flatnonzero(stretch == n)
