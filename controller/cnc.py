@@ -112,6 +112,12 @@ class Controller:
         return self._until_now(EventKind.WARNING)
 
     @property
+    def common_variables(self) -> dict[int, float | None]:
+        """Common variables (#100 to #199, #500 to #999) that the program has set, None = null; as planned,
+        which is what they are once it has finished."""
+        return self._execution.common
+
+    @property
     def finished(self) -> bool:
         """Whether nothing more will be proposed: the program has ended, by itself, by an alarm, or because it
         waits for an operator who is not there. What is posted then may let it go on."""

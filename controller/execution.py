@@ -92,6 +92,11 @@ class Execution:
         except StopIteration:
             self.done, self.request = True, None
 
+    @property
+    def common(self) -> dict[int, float | None]:
+        """The common variables that the program has set, as planned so far."""
+        return self._interpreter.common
+
     def halt(self, alarm: Alarm) -> None:
         """The machine has stopped: nothing more is planned."""
         self._report(EventKind.ALARM, alarm)

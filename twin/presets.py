@@ -105,6 +105,8 @@ def offsets_of(job: Job, cutters: Mapping[int, Cutter]) -> Offsets:
     tools: dict[int, dict[str, float]] = {
         number: {"X": 2.0 * (cutter.radius - first.radius)} for number, cutter in cutters.items() if number
     }
+    if job.probe is not None:
+        tools[job.probe.tool] = {"X": 2.0 * (job.probe.reach_mm - first.radius)}
     for name, values in job.setup.tool_offsets.items():
         if not name.isdigit():
             raise InputError(f"tool_offsets: {name!r} is no number", place=Place(file=str(job.path)))

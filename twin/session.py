@@ -1,7 +1,7 @@
 """Controller and machine on one clock, and the recording of what they did."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
 from itertools import pairwise
 
 import numpy as np
@@ -43,6 +43,8 @@ class Session:
     warnings: tuple[Alarm, ...]
     skipped_s: float
     """idle time that was passed over"""
+    common: Mapping[int, float | None] = field(default_factory=dict)
+    """common variables of the control at the end, #100 to #199 and #500 to #999"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,9 +109,12 @@ def run_program(
         events=settings.events,
     )
     if ideal:
-        machine: Machine = IdealMachine(len(controller.axes), settings.encoders)
+        contact = None if ready.probe is None else ready.probe.contact
+        machine: Machine = IdealMachine(
+            len(controller.axes), settings.encoders, contact=contact, period_s=controller.tick_s
+        )
     else:
-        machine = MujocoMachine(misread(ready.tools[0].assembly, settings.encoders))
+        machine = MujocoMachine(misread(ready.driven, settings.encoders))
     guarded = Guarded(machine, ready.tools[0].assembly)
     return record(controller, guarded, ready, progress=progress)
 
@@ -152,6 +157,7 @@ def record(
         alarms=controller.alarms,
         warnings=controller.warnings,
         skipped_s=skipped * controller.tick_s,
+        common=controller.common_variables,
     )
 
 
@@ -162,10 +168,10 @@ def _recording(
     n = len(tape.time)
     centre, axis, zero = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     motions: list[tuple[Cutter, CutterMotion]] = []
-    for first, last, mounted in _stretches(ready.tools, tape.tool):
+    for first, last, mounted, cuts in _stretches(ready, tape.tool):
         motion = cutter_motion(mounted.kinematics, tape.time[first:last], tape.actual[first:last])
         centre[first:last], axis[first:last], zero[first:last] = part_frame(motion)
-        if last - first > 1:
+        if cuts and last - first > 1:
             motions.append((mounted.cutter, motion))
     recording = Recording(
         time_s=tape.time,
@@ -193,31 +199,38 @@ def _recording(
 
 
 def tool_motions(
-    tools: tuple[MountedTool, ...], time_s: Floats, actual: Floats, tool: NDArray[np.int16]
+    ready: Ready, time_s: Floats, actual: Floats, tool: NDArray[np.int16]
 ) -> tuple[tuple[Cutter, CutterMotion], ...]:
     """How recorded axes (n, axes) move each tool, one for each stretch with one tool in the spindle."""
     return tuple(
         (mounted.cutter, cutter_motion(mounted.kinematics, time_s[first:last], actual[first:last]))
-        for first, last, mounted in _stretches(tools, tool)
-        if last - first > 1
+        for first, last, mounted, cuts in _stretches(ready, tool)
+        if cuts and last - first > 1
     )
 
 
-def _stretches(tools: tuple[MountedTool, ...], tool: NDArray) -> list[tuple[int, int, MountedTool]]:
-    """First and one-past-last sample of each stretch with one tool; number 0 is the first tool."""
+def _stretches(ready: Ready, tool: NDArray) -> list[tuple[int, int, MountedTool, bool]]:
+    """First and one-past-last sample of each stretch with one tool, and whether it cuts.
+
+    Number 0 is the first tool; the touch probe has the first tool's place, and cuts nothing.
+    """
     if not len(tool):
         return []
+    tools, probe = ready.tools, None if ready.probe is None else ready.probe.contact.probe.tool
     by_number = {t.number: t for t in tools}
     change = np.flatnonzero(np.diff(tool)) + 1
     bounds = [0, *change.tolist(), len(tool)]
     found = []
     for first, last in pairwise(bounds):
         number = int(tool[first])
+        if number == probe:
+            found.append((first, last, tools[0], False))
+            continue
         mounted = by_number.get(number, tools[0] if number == 0 or len(tools) == 1 else None)
         if mounted is None:
             raise PartError(
                 f"the program calls T{number:02d}, which the job does not have",
                 remedy=f"valid: {', '.join(f'T{n:02d}' for n in by_number)}",
             )
-        found.append((first, last, mounted))
+        found.append((first, last, mounted, True))
     return found

@@ -1,6 +1,7 @@
 """A job made ready to run: the machine as mounted, the controller's offsets, each tool's cutter."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from controller.tables.machine_data import machine_data
@@ -10,7 +11,7 @@ from twin.cutters.hob import Hob
 from twin.cutting.motion import RigidTransform
 from twin.errors import InputError
 from twin.faults.chain import faulty
-from twin.faults.mounts import arbor, clamping
+from twin.faults.mounts import arbor, band_form, clamping
 from twin.inspection.nominal import GearNominal
 from twin.job.schema import Job, Tool
 from twin.kinematics import Kinematics, read_kinematics
@@ -26,6 +27,9 @@ from twin.machine import (
     assemble,
     load_machine,
 )
+from twin.machine.stylus import StylusMount
+from twin.probing.band import steps_of
+from twin.probing.contact import Contact
 
 HEAD = 66.0
 """Radius of the tool head about the tool's axis [mm]."""
@@ -48,6 +52,16 @@ class MountedTool:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MountedProbe:
+    """The touch probe beside the first tool."""
+
+    assembly: Assembly
+    """of the first tool, with the stylus"""
+    contact: Contact
+    """the same in closed form, for ideal axes"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Ready:
     """Everything that a run needs beside the program."""
 
@@ -59,6 +73,12 @@ class Ready:
     """of the work spindle among the system axes"""
     tool_column: int
     """of the tool spindle"""
+    probe: MountedProbe | None = None
+
+    @property
+    def driven(self) -> Assembly:
+        """The machine that the drives move."""
+        return self.tools[0].assembly if self.probe is None else self.probe.assembly
 
 
 def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | None = None) -> Ready:
@@ -81,7 +101,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         arbor_diameter_mm=job.work.arbor_diameter_mm or ARBOR * _root_diameter(job),
         stick_out_mm=job.work.stick_out_mm or _stick_out(job, cutters, lowest_z_mm),
     )
-    tools = []
+    tools, mounts = [], []
     for number, cutter in cutters.items():
         mount = ToolMount(
             carrier_swivel_deg=math.degrees(cutter.swivel),
@@ -89,6 +109,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
             length_mm=_length(job, job.tools[number]),
             edges=max(len(cutter.gash_angle), 1),
         )
+        mounts.append(mount)
         assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
         kinematics = replace(
             faulty(
@@ -104,7 +125,24 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         tools=tuple(tools),
         work_column=tools[0].kinematics.work.spindle.column,
         tool_column=tools[0].kinematics.tool.spindle.column,
+        probe=_probe(
+            job,
+            tools[0].kinematics,
+            lambda stylus: assemble(spec, setup, work=work, tool=mounts[0], zero=zero, stylus=stylus),
+        ),
     )
+
+
+def _probe(
+    job: Job, kinematics: Kinematics, assembled: Callable[[StylusMount], Assembly]
+) -> MountedProbe | None:
+    """The job's touch probe on the machine, where it has one."""
+    if job.probe is None:
+        return None
+    steps, form = steps_of(job.work.blank()), band_form(job.faults)
+    stylus = StylusMount(probe=job.probe, steps=steps, form=form, clamping=kinematics.mount)
+    contact = Contact(probe=job.probe, kinematics=kinematics, steps=steps, form=form)
+    return MountedProbe(assembly=assembled(stylus), contact=contact)
 
 
 def require_analogue(ready: Ready, parameters: Parameters) -> None:

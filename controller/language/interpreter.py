@@ -13,6 +13,7 @@ from controller.language.blocks import interpret_block
 from controller.language.draft import Draft
 from controller.language.flow import Flow
 from controller.language.lexer import OpenWord, Word, lex
+from controller.language.macro.functions import Value
 from controller.language.macro.run import MacroRunner
 from controller.language.macro.statement import Statement, parse_statement
 from controller.language.macro.system import SystemVariables
@@ -81,6 +82,11 @@ class Interpreter:
     def offsets(self) -> Offsets:
         """Work and tool offsets as the program has left them."""
         return self._system.offsets
+
+    @property
+    def common(self) -> dict[int, Value]:
+        """The common variables that the program has set, by number; None = set to null."""
+        return dict(self._variables.common)
 
     def next(self, motion: Motion) -> Step | None:
         """The next block; None when the program has ended. Raises AlarmError with the block's place.

@@ -46,6 +46,7 @@ class AlarmEntry:
 _CLASS_OF = {
     "HT9013": AlarmClass.SERVO,
     "HT9030": AlarmClass.SERVO,
+    "HT9031": AlarmClass.SERVO,
     "PS": AlarmClass.PROGRAM,
     "HT": AlarmClass.PROGRAM,
     "OT": AlarmClass.OVERTRAVEL,
@@ -145,6 +146,7 @@ HT9015 | TOO MANY REPETITIONS | a program whose loops and calls repeat less
 HT9016 | TOO MANY PASSES IN A CYCLE | a larger depth of cut
 HT9020 | THREAD TOO FAST FOR THE AXES | a lower spindle speed, or a smaller lead
 HT9030 | COLLISION | a path on which nothing but the cutter touches the work
+HT9031 | TOUCH PROBE CRASH | a path on which the stylus meets a reference band alone, and stops in time
 """
 
 _WARNINGS = """

@@ -56,7 +56,10 @@ class Scene:
     """inclination of the tilted slide as built [rad]; a wrong parameter 8210 does not move the guides"""
 
     def tool(self, number: int) -> MountedTool | None:
-        """The tool of a T number, as a run takes it; None where the job has no such tool."""
+        """The tool of a T number, as a run takes it; None for the touch probe, and where the job has no such
+        tool."""
+        if self.job.probe is not None and number == self.job.probe.tool:
+            return None
         tools = tuple(self.tools.values())
         return self.tools.get(number, tools[0] if number == 0 or len(tools) == 1 else None)
 

@@ -15,7 +15,10 @@ from twin.inspection.nominal import GearNominal
 
 def judge_call(scene: Scene, seen: Observed) -> Iterator[Advice]:
     """Advice on a T word that calls what the job does not have."""
-    if isinstance(seen.command, SelectTool) and scene.tool(seen.command.number) is None:
+    probe = scene.job.probe
+    if not isinstance(seen.command, SelectTool) or (probe and seen.command.number == probe.tool):
+        return
+    if scene.tool(seen.command.number) is None:
         valid = ", ".join(f"T{number:02d}" for number in scene.tools)
         found = f"T{seen.command.number:02d}"
         yield Advice(kind=Kind.UNKNOWN_TOOL, found=found, span=seen.span, valid=f"{valid} of the job")

@@ -163,7 +163,7 @@ def _felt(task: _Task) -> Felt | str:
     settings = settings_of(job, cutters)
     if task.drives is None:
         actual = stands(settings.encoders, task.ideal.actual)
-        motions = tool_motions(ready.tools, task.ideal.time_s, actual, task.ideal.tool)
+        motions = tool_motions(ready, task.ideal.time_s, actual, task.ideal.tool)
     else:
         session = run_program(load_program(job.program), settings, _driven(ready, task.drives), ideal=False)
         if session.alarms:
@@ -191,9 +191,13 @@ def _feel(
 
 def _driven(ready: Ready, kept: tuple[str, ...]) -> Ready:
     """The machine with drives that misread nothing but `kept`."""
-    first = ready.tools[0]
-    assembly = replace(first.assembly, spec=with_drives(first.assembly.spec, kept))
-    return replace(ready, tools=(replace(first, assembly=assembly), *ready.tools[1:]))
+    first, probe = ready.tools[0], ready.probe
+    spec = with_drives(first.assembly.spec, kept)
+    return replace(
+        ready,
+        tools=(replace(first, assembly=replace(first.assembly, spec=spec)), *ready.tools[1:]),
+        probe=probe and replace(probe, assembly=replace(probe.assembly, spec=spec)),
+    )
 
 
 def _budget(

@@ -8,6 +8,7 @@ from twin.cutters.cutter import Cutter
 from twin.cutting.motion import RigidTransform
 from twin.faults.table import Faults
 from twin.kinematics import rotation_about
+from twin.probing.band import Form
 
 
 def clamping(faults: Faults, length_mm: float) -> RigidTransform:
@@ -21,6 +22,15 @@ def clamping(faults: Faults, length_mm: float) -> RigidTransform:
         tilt=math.radians(faults.work_tilt_deg),
         lean=math.radians(faults.work_tilt_phase_deg),
         middle=-length_mm / 2.0,
+    )
+
+
+def band_form(faults: Faults) -> Form:
+    """How the reference bands of the blank are out of round."""
+    return Form(
+        range_mm=faults.band_out_of_round_mm,
+        lobes=faults.band_lobes,
+        phase=math.radians(faults.band_lobes_phase_deg),
     )
 
 

@@ -32,6 +32,12 @@ class Faults:
     """the blank's own axis off the work spindle's, in the middle of the blank's length"""
     work_eccentricity_phase_deg: float = 0.0
     """where the blank's axis stands from the spindle's"""
+    band_out_of_round_mm: Small = 0.0
+    """range of the reference bands' radius about the turn; only a touch probe sees it"""
+    band_lobes: Annotated[int, Meta(ge=2, le=100)] = 2
+    """waves of it about the turn"""
+    band_lobes_phase_deg: float = 0.0
+    """where a crest stands"""
     work_tilt_deg: Tilt = 0.0
     """the blank's own axis against the work spindle's; both meet in the middle of the blank's length"""
     work_tilt_phase_deg: float = 0.0

@@ -31,6 +31,8 @@ from twin.job.schema import (
     Tool,
     WorkTable,
 )
+from twin.probing.band import steps_of
+from twin.probing.probe import Probe
 
 T = TypeVar("T")
 
@@ -51,6 +53,7 @@ TABLES = (
     "nominal",
     "inspection",
     "faults",
+    "probe",
     "events",
     "expect",
 )
@@ -124,6 +127,7 @@ class _Reader:
             nominal=nominal,
             inspection=self._table(InspectionTable, ("inspection",)),
             faults=self._faults(tools),
+            probe=self._probe(work, tools),
             events=self._events(),
             expect=self._expect(),
         )
@@ -220,6 +224,28 @@ class _Reader:
                     ("faults", key), f"faults.{key}: {cause.text}", cause.remedy.removeprefix("valid: ")
                 )
         return faults
+
+    def _probe(self, work: WorkTable, tools: Mapping[int, Tool | GapWheel]) -> Probe | None:
+        if "probe" not in self.data:
+            return None
+        probe = self._table(Probe, ("probe",))
+        if probe.tool in tools:
+            free = next(number for number in range(99, 0, -1) if number not in tools)
+            self._fail(("probe", "tool"), f"T{probe.tool:02d} is a cutter", f"another number, as {free}")
+        if not any(step.band for step in steps_of(work.blank())):
+            self._fail(
+                ("probe",),
+                "the blank has no band that could be probed",
+                "a cylinder below the gaps' roots in [work] profile, as a hub",
+            )
+        if probe.pretravel_mm >= probe.overtravel_mm:
+            self._fail(
+                ("probe", "overtravel_mm"),
+                f"the signal comes after {probe.pretravel_mm:g} mm, the stylus ends at "
+                f"{probe.overtravel_mm:g} mm",
+                "overtravel_mm above trigger_force_n / stiffness_n_per_mm",
+            )
+        return probe
 
     def _program(self) -> Path:
         raw = self._raw(("program",))

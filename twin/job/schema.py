@@ -17,6 +17,7 @@ from twin.grinding.precut import PrecutGear
 from twin.inspection.nominal import Nominal
 from twin.job.expect import Expectation
 from twin.job.locate import line_of
+from twin.probing.probe import Probe
 
 MODELS = Path(models.__file__).parent
 Positive = Annotated[float, Meta(gt=0)]
@@ -137,6 +138,8 @@ class Job:
     nominal: Nominal | None
     inspection: InspectionTable
     faults: Faults = field(default_factory=Faults)
+    probe: Probe | None = None
+    """the touch probe, where the machine has one"""
     events: tuple[EventTable, ...] = ()
     expect: tuple[Expectation, ...] = ()
     """what a run must come to"""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from twin.errors import InputError
 from twin.machine.drive import AxisDrive, DriveKind
 from twin.machine.spec import MachineSpec, Setup
+from twin.machine.stylus import StylusMount, mount_stylus
 
 STEEL = 7850.0
 """density [kg/m³]"""
@@ -62,6 +63,8 @@ class Assembly:
     """editable; with everything visible, lights and cameras"""
     model: mujoco.MjModel
     """compiled for physics: nothing that is only seen"""
+    stylus: StylusMount | None = None
+    """the touch probe, where one is mounted"""
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -101,8 +104,9 @@ def assemble(
     work: WorkMount,
     tool: ToolMount,
     zero: MachineZero | None = None,
+    stylus: StylusMount | None = None,
 ) -> Assembly:
-    """Mount work and tool on a machine and compile it.
+    """Mount work and tool on a machine, and a touch probe beside the tool, and compile it.
 
     Raises InputError for sizes that are not positive and for an MJCF that does not compile.
     """
@@ -121,6 +125,8 @@ def assemble(
     # Every frame of the tool chain stands in the tool centre at machine zero.
     mjcf.body("z_slide").pos = [0.0, 0.0, (stick_out + zero.z_mm) * MM]
     mjcf.body("x_slide").pos = [(zero.x_mm / 2 + tool.radius_mm) * MM, 0.0, 0.0]
+    if stylus is not None:
+        mount_stylus(mjcf, stylus)
     mjcf.option.timestep = spec.physics_step_s
     physics = mjcf.copy()
     physics.discard_visual()
@@ -131,7 +137,7 @@ def assemble(
         raise InputError(
             f"machine model {spec.name!r} does not compile: {cause}", place=spec.place
         ) from cause
-    return Assembly(spec=spec, setup=setup, mjcf=mjcf, model=model)
+    return Assembly(spec=spec, setup=setup, mjcf=mjcf, model=model, stylus=stylus)
 
 
 def _require_sizes(work: WorkMount, tool: ToolMount, zero: MachineZero) -> None:

@@ -19,7 +19,8 @@ from twin.machine.induction import Induction, steepest
 from twin.machine.loops import Loops
 from twin.machine.servo import Gains, Servo, tune
 from twin.machine.stability import require_stable
-from twin.machine.watching import MachineError, Watcher, speed_reached
+from twin.machine.stylus import Stylus
+from twin.machine.watching import MachineError, Watcher, require_probe, speed_reached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +36,22 @@ class _Axis:
     qpos: int
     dof: int
     rotary: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Stretch:
+    """What the loop has made of a chunk, n ticks of it."""
+
+    setpoint: Floats
+    """(n, axes) as followed [mm | deg]"""
+    motor: Floats
+    """(n, axes) motor-side positions [m | rad]"""
+    measured: Floats
+    """(n, axes) encoder readings [m | rad]"""
+    reached: bool
+    """whether the watch was fulfilled at the last tick"""
+    latch: Floats | None
+    """(axes,) readings at the touch of the probe [m | rad]"""
 
 
 class MujocoMachine:
@@ -71,6 +88,9 @@ class MujocoMachine:
         self._overload = [max(1, round(d.drive.overload_time_s / period)) for d in drives]
         self._reading = [0.0] * len(self._axes)
         self._watcher = Watcher()
+        self._stylus = None
+        if assembly.stylus is not None:
+            self._stylus = Stylus(model, assembly.stylus, "work_spindle", period)
         self._tick = 0
 
     def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:
@@ -81,22 +101,27 @@ class MujocoMachine:
         """
         require_chunk(chunk, len(self._axes), self._tick)
         watch = self._watcher.begin(chunk.watch)
+        if self._stylus is not None:
+            self._stylus.begin(chunk)
+        else:
+            require_probe(chunk, None)
         limit = chunk.ticks if watch is None else min(chunk.ticks, self._watcher.remaining)
         forces = None if load is None or limit == 0 else self._forces(load, limit)
-        setpoint, motor, measured, reached = self._run(chunk, limit, watch, forces)
-        ticks = len(motor)
-        if not np.isfinite(motor).all() or any(w.number for w in self.data.warning):
+        run = self._run(chunk, limit, watch, forces)
+        ticks = len(run.motor)
+        if not np.isfinite(run.motor).all() or any(w.number for w in self.data.warning):
             raise MachineError(
                 f"the machine's motion broke down between ticks {self._tick} and {self._tick + ticks}",
                 remedy="look for setpoints or loads beyond what the drives can do",
             )
         self._tick += ticks
-        signals = self._watcher.end(ticks, reached=reached)
+        signals = self._watcher.end(ticks, reached=run.reached)
         return Feedback(
             ticks=ticks,
-            setpoint=setpoint,
-            actual=self._load_side(motor, forces) / self._units,
-            measured=measured / self._units,
+            setpoint=run.setpoint,
+            actual=self._load_side(run.motor, forces) / self._units,
+            measured=run.measured / self._units,
+            latch=None if run.latch is None else run.latch / self._units,
             alarms=self._alarms(),
             signals=signals,
         )
@@ -113,11 +138,8 @@ class MujocoMachine:
             raise ValueError(f"load: not finite between ticks {self._tick} and {self._tick + ticks}")
         return forces
 
-    def _run(
-        self, chunk: Chunk, limit: int, watch: Watch | None, forces: Floats | None
-    ) -> tuple[Floats, Floats, Floats, bool]:
-        """Setpoints as followed [mm | deg], motor-side positions and encoder readings [m | rad], and
-        whether the watch was fulfilled at the last tick.
+    def _run(self, chunk: Chunk, limit: int, watch: Watch | None, forces: Floats | None) -> _Stretch:
+        """Step through the chunk, at most `limit` ticks, to where it has to end.
 
         Plain floats in one loop: on arrays this short numpy would cost more than the physics.
         """
@@ -138,7 +160,8 @@ class MujocoMachine:
         setpoint = chunk.setpoint[:limit].copy()
         positions: list[list[float]] = []
         readings: list[list[float]] = []
-        reached = False
+        reached, latch = False, None
+        stylus = self._stylus
         applied[:] = 0.0
         m = self._reading
         for k, target in enumerate((setpoint * self._units).tolist()):
@@ -150,8 +173,11 @@ class MujocoMachine:
                 ctrl[motor] = induction.force(target[axis], float(qvel[dof]))
             if forces is not None:
                 applied[dofs] = forces[k]
+            if stylus is not None:
+                stylus.prepare(k, data)
             mujoco.mj_step(model, data, substeps)
             q = qpos.tolist()
+            before = m
             m = [read(q[at]) for read, at in readers]
             positions.append(q)
             readings.append(m)
@@ -163,13 +189,24 @@ class MujocoMachine:
             for axis, _, servo, error_limit, overload in servos:
                 if abs(servo.reference - m[axis]) > error_limit or servo.periods_at_limit >= overload:
                     alarm = True
-            reached = watch is not None and self._holds(watch, m)
+            if stylus is not None:
+                share = stylus.follow(data)
+                if share is not None:
+                    latch = np.array(before) + share * (np.array(m) - before)
+                alarm = alarm or stylus.alarm is not None
+            reached = latch is not None or (watch is not None and self._holds(watch, m))
             if alarm or reached:
                 break
         self._reading = m
         shape = len(positions), len(axes)
         motor_side = np.array(positions).reshape(len(positions), model.nq)[:, self._qpos]
-        return setpoint[: len(positions)], motor_side, np.array(readings).reshape(shape), reached
+        return _Stretch(
+            setpoint=setpoint[: len(positions)],
+            motor=motor_side,
+            measured=np.array(readings).reshape(shape),
+            reached=reached,
+            latch=latch,
+        )
 
     def _follower(self, coupling: Follow) -> tuple[Servo, float]:
         """Loop and unit of a coupling's slave. Raises MachineError where it is no servo."""
@@ -193,8 +230,10 @@ class MujocoMachine:
     def _holds(self, watch: Watch, m: list[float]) -> bool:
         """Whether the watched axes (`latch_axes`, none named = all) fulfil the condition after this tick.
 
-        A spindle without a position loop is always in position.
+        A spindle without a position loop is always in position. Touches are the stylus's affair.
         """
+        if watch.kind is WatchKind.SKIP:
+            return False
         watched = watch.latch_axes or range(len(self._axes))
         if watch.kind is WatchKind.IN_POSITION:
             return all(
@@ -209,6 +248,8 @@ class MujocoMachine:
     def _alarms(self) -> tuple[MachineAlarm, ...]:
         """Axes whose following error exceeds its limit now, or whose motor has stood too long at its own."""
         alarms: list[MachineAlarm] = []
+        if self._stylus is not None and self._stylus.alarm is not None:
+            alarms.append(self._stylus.alarm)
         for k, (name, axis) in enumerate(zip(self.assembly.joints, self._axes, strict=True)):
             loop, drive = axis.loop, axis.drive
             if not isinstance(loop, Servo):

@@ -1,7 +1,8 @@
-"""What the machine observes for the controller: in position, speed reached."""
+"""What the machine observes for the controller: in position, speed reached, the skip signal."""
 
-from controller.clock import Watch, WatchKind
+from controller.clock import Chunk, MachineAlarm, Watch, WatchKind
 from twin.errors import HobtwinError
+from twin.probing.probe import Probe
 
 SPEED_TOLERANCE = 0.05
 """relative deviation at which a commanded speed counts as reached [plausible]"""
@@ -26,8 +27,6 @@ class Watcher:
 
     def begin(self, watch: Watch | None) -> Watch | None:
         """Take up a chunk's watch; an equal one that is still pending goes on counting."""
-        if watch is not None and watch.kind is WatchKind.SKIP:
-            raise MachineError("a skip (G31) needs a touch probe, and this machine has none")
         if watch != self._watch:
             self._watch, self._elapsed = watch, 0
         return watch
@@ -47,6 +46,33 @@ class Watcher:
         if reached or timeout:
             self._watch = None
         return signals
+
+
+def require_probe(chunk: Chunk, probe: Probe | None) -> bool:
+    """Whether a chunk waits for the touch of a probe. Raises MachineError where it is not in its place."""
+    if chunk.watch is None or chunk.watch.kind is not WatchKind.SKIP:
+        return False
+    if probe is None:
+        raise MachineError(
+            "a skip (G31) needs a touch probe, and this machine has none", remedy="[probe] in the job"
+        )
+    if chunk.ticks and int(chunk.tool[0]) != probe.tool:
+        raise MachineError(
+            f"a skip (G31) with T{int(chunk.tool[0]):02d} in place: the touch probe is T{probe.tool:02d}",
+            remedy=f"T{probe.tool:02d}{probe.tool:02d} before it",
+        )
+    return True
+
+
+def crash(probe: Probe, pushed_mm: float, *, no_band: bool) -> MachineAlarm | None:
+    """The alarm of a stylus that is pushed back so far, or by what is no band; None where all is well."""
+    if no_band:
+        found = "the stylus touches what is no reference band"
+    elif pushed_mm > probe.overtravel_mm:
+        found = f"the stylus is pushed back {pushed_mm:.3f} mm, its overtravel is {probe.overtravel_mm:g} mm"
+    else:
+        return None
+    return MachineAlarm(number="HT9031", axis=None, found=found)
 
 
 def speed_reached(commanded: float, actual: float) -> bool:
