@@ -14,6 +14,8 @@ from twin.cutters.convex import ConvexPiece, Point, Round, Side
 
 STRAIGHT = 1e-7
 """[rad] below which two strokes run on without a corner"""
+LEVEL = 1e-12
+"""[rad] that a vertical side may lean by rounding"""
 HALVINGS = 60
 
 
@@ -166,6 +168,6 @@ def _assembled(path: list[tuple[Point, Side | Round]], root: float) -> ConvexPie
         before = last
     across, along = sides[-1].normal
     if across > STRAIGHT:
-        lowest = 0.0 if along == 0 else along * root
+        lowest = 0.0 if abs(along) < LEVEL else along * root
         widest = max(widest, (sides[-1].height - lowest) / across)
     return ConvexPiece(sides=tuple(sides), rounds=tuple(rounds), half_width=widest)

@@ -20,8 +20,8 @@ Bools = NDArray[np.bool_]
 
 CHECKED = 1000
 """Points of the mesh that every run holds against all passes: half vertices, half middles of facets"""
-VERTEX_ERROR = 2e-3
-"""[mm] off the envelope from which a vertex is worth a note: an edge of the cut that a cell could not hold"""
+VERTEX_ERROR = 1e-4
+"""[mm] off the envelope from which a vertex is worth a note"""
 FACET_ERROR = 1e-2
 """[mm] off the envelope from which the cells are too coarse for the part"""
 PROBES = 20_000
@@ -77,8 +77,7 @@ def coarse(vertices: Errors, facets: Errors) -> list[str]:
     if len(off.distance):
         notes.append(
             f"{len(off.distance)} of {len(vertices.distance)} checked points of the cut stand up to "
-            f"{off.largest_um:.0f} µm off it, at its edges, {region(off.points)}; a smaller --cell-mm holds "
-            "them better"
+            f"{off.largest_um:.2g} µm off it, {region(off.points)}; a smaller --cell-mm holds them better"
         )
     off = facets.beyond(FACET_ERROR)
     if len(off.distance):

@@ -84,6 +84,17 @@ def edge_key(grid: Grid, axis: Ints | int, node: Ints) -> Ints:
     return axis * np.int64(np.prod(grid.node_shape)) + grid.node_id(*node.T)
 
 
+def edge_nodes(grid: Grid, crossings: Crossings, row: Ints) -> tuple[Floats, Floats]:
+    """The removed and the kept end (m, 3) of the edges that some of the crossings are on."""
+    axis, node = np.divmod(crossings.key[row], np.int64(np.prod(grid.node_shape)))
+    low = np.stack(np.unravel_index(node, grid.node_shape), axis=1)
+    high = low.copy()
+    high[np.arange(len(row)), axis] += 1
+    ends = grid.points(*low.T), grid.points(*high.T)
+    rising = crossings.rising[row, None]
+    return np.where(rising, ends[0], ends[1]), np.where(rising, ends[1], ends[0])
+
+
 def find_crossings(sweep: Sweep, grid: Grid, leaves: Leaves, depth: Floats) -> Crossings:
     """All crossings with edges, in the order of their keys."""
     node, block = _owned(leaves)

@@ -139,7 +139,7 @@ def _general(blank: Blank, sweep: Sweep, grid: Grid, closest: float, progress: P
     crossings = find_crossings(sweep, grid, leaves, depth)
     cell_low, case, leaf = leaf_cells(grid, leaves, depth)
     progress("meshing", 0.7)
-    surface = contour(sweep, grid, Cells(cell_low, case, leaf, leaves.tangents), crossings)
+    surface = contour(sweep, grid, Cells(cell_low, case, leaf), crossings, leaves)
     progress("checking", 0.8)
     errors, facets = check(sweep, surface, blank)
     notes += coarse(errors, facets) + missed(sweep, grid, leaves, surface, depth=depth, blank=blank)

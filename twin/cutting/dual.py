@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from twin.cutting.crossings import Crossings, edge_key
 from twin.cutting.grid import Grid
-from twin.cutting.local import Tangents
+from twin.cutting.landing import Around, Ground, landed
+from twin.cutting.refine import Leaves
 from twin.cutting.sweep import Sweep
 from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS, edge_at
 
@@ -22,8 +23,6 @@ Ints = NDArray[np.int64]
 FEATURE = 3e-5
 """Share of an eigenvalue of the normals' scatter above which planes are taken to meet in that direction: more
 than about 0.6° apart, as feed marks and generating flats are."""
-SHARP = 0.03
-"""The same for an edge, where planes are more than about 20° apart."""
 MARGIN = 0.05
 """Share of a cell by which a vertex may stand outside its own."""
 
@@ -47,20 +46,22 @@ class Cells:
     case: Ints
     """(n,) corner signs as bits"""
     leaf: Ints
-    """(n,) row of its leaf in `tangents`"""
-    tangents: Tangents
+    """(n,) row of its leaf"""
 
 
-def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings) -> Surface:
+def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings, leaves: Leaves) -> Surface:
     """Mesh of the cut surface."""
     first = np.concatenate([[0], np.cumsum(SHEETS[cells.case])])
     sheets = _Sheets.of(grid, cells, crossings, first)
     vertices, normals, spread = _fit(grid, cells, crossings, sheets)
+    # a vertex beside a closing face has planes that no bite makes: it stays
+    closed = np.zeros(len(vertices), dtype=bool)
+    closed[sheets.owner[sheets.bite < 0]] = True
     longest = 0.5 * min(grid.cell_mm)
-    vertices = _onto_edges(sweep, vertices, spread > FEATURE, sheets, longest)
-    smooth = np.flatnonzero(spread < SHARP)
-    leaf = cells.leaf[sheets.cell[smooth]]
-    vertices[smooth] = _onto_surface(sweep, vertices[smooth], leaf, cells.tangents, longest)
+    vertices = _onto_edges(sweep, vertices, (spread > FEATURE) & ~closed, sheets, longest)
+    ground = Ground(sweep, grid, leaves)
+    around = Around(sheets.owner, sheets.row, cells.leaf[sheets.cell])
+    vertices = landed(ground, vertices, np.flatnonzero(~closed), around, crossings)
     quads = _quads(grid, cells, crossings, first)
     return Surface(vertices, _triangles(vertices, normals, quads))
 
@@ -94,7 +95,7 @@ class _Sheets:
 
 def _fit(grid: Grid, cells: Cells, crossings: Crossings, sheets: _Sheets) -> tuple[Floats, Floats, Floats]:
     """Vertices (n, 3) where the tangent planes of each sheet's crossings meet best, normals, and how far
-    the planes differ (n,), in terms of FEATURE and SHARP."""
+    the planes differ (n,), in terms of FEATURE."""
     owner, n = sheets.owner, len(sheets.cell)
     p, q = crossings.point[sheets.row], crossings.normal[sheets.row]
     count = _totals(owner, np.ones(len(owner)), n)
@@ -157,21 +158,6 @@ def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.b
     return own | (near & (ids[at] != mine))
 
 
-def _onto_surface(sweep: Sweep, points: Floats, leaf: Ints, tangents: Tangents, longest: float) -> Floats:
-    """Two Newton steps towards the field's zero, none longer than `longest` [mm]."""
-    points = points.copy()
-    for _ in range(2):
-        found = sweep.deepest(points, leaf, tangents, gradient=True)
-        value, slope = found.depth, found.gradient
-        square = np.einsum("nx,nx->n", slope, slope)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = -slope * (value / square)[:, None]
-        length = np.linalg.norm(step, axis=1)
-        near = np.isfinite(length) & (length < longest)
-        points[near] += step[near]
-    return points
-
-
 def _onto_edges(
     sweep: Sweep, vertices: Floats, edgy: NDArray[np.bool_], sheets: _Sheets, longest: float
 ) -> Floats:
@@ -181,15 +167,11 @@ def _onto_edges(
     mine = edgy[sheets.owner] & (sheets.bite >= 0)
     bites = sheets.bite.max() + 1
     owner, bite = np.divmod(np.unique(number[sheets.owner[mine]] * bites + sheets.bite[mine]), bites)
-    # a vertex beside a closing face has planes that no bite makes: it stays
-    closed = np.zeros(len(vertices), dtype=bool)
-    closed[sheets.owner[sheets.bite < 0]] = True
     rows = np.flatnonzero(edgy)
-    free = ~closed[rows]
     for _ in range(2):
         meeting = sweep.evaluate(vertices[rows[owner]], bite, gradient=True)
         step, _ = _meet(owner, meeting.gradient, -meeting.depth, len(rows))
-        step[~free | (np.linalg.norm(step, axis=1) > longest)] = 0.0
+        step[np.linalg.norm(step, axis=1) > longest] = 0.0
         vertices[rows] += step
     return vertices
 

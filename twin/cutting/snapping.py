@@ -17,7 +17,7 @@ FINEST = 2.0**-17
 """[mm] of the grid at least: 7.6 nm"""
 MANTISSA = 24
 """bits of a number in single precision"""
-ROUNDS = 4
+ROUNDS = 16
 """of parting what may not be joined"""
 
 
@@ -37,13 +37,18 @@ def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     Faces that lose a side go, and so do two that become each other's back: a closed 2-manifold stays one.
     """
     step = grid_step(vertices)
-    places = np.rint(vertices / step).astype(np.int64)
+    nearest = np.rint(vertices / step).astype(np.int64)
+    places = nearest.copy()
     left, number, met = _joined(places, faces)
-    for _ in range(ROUNDS):
+    rng = np.random.default_rng(0)
+    for turn in range(ROUNDS):
         apart = np.isin(number, _of_shared_edges(left[met[left].any(axis=1)])) & met[number]
         if not apart.any():
             break
-        places[apart] += _towards_neighbours(vertices, faces)[apart]
+        places[apart] = nearest[apart] + _towards_neighbours(vertices, faces)[apart]
+        if turn:
+            # what is drawn the same way stays together: any other way does
+            places[apart] += rng.integers(-1, 2, (apart.sum(), 3))
         left, number, met = _joined(places, faces)
     first = np.zeros(len(met), dtype=np.int64)
     first[number] = np.arange(len(number))

@@ -16,6 +16,9 @@ Ints = NDArray[np.int64]
 BEYOND = 1.0
 """[mm] that a tool may stay away from a point and still count in `unculled`"""
 
+TOGETHER = 16
+"""points that are evaluated at once there"""
+
 
 @dataclass(frozen=True, slots=True)
 class Deepest:
@@ -27,6 +30,10 @@ class Deepest:
     """(n, 3) of the depth; (0, 3) unless asked for"""
     bite: Ints
     """(n,) −1 where a block has none"""
+
+    def of(self, rows: Ints | NDArray[np.bool_]) -> "Deepest":
+        """That at some of the points."""
+        return Deepest(self.depth[rows], self.gradient[rows], self.bite[rows])
 
 
 class Sweep:
@@ -48,16 +55,17 @@ class Sweep:
         Nothing else of the search for the surface is relied on.
         """
 
-        def work(part: slice) -> float:
-            point = points[part.start]
-            depth = -np.inf
+        def work(part: slice) -> Floats:
+            depth = np.full(part.stop - part.start, -np.inf)
             for f in self.fields:
-                index = f.near(point, BEYOND)
-                found = f.evaluate(np.broadcast_to(point, (len(index), 3)), index).depth
-                depth = max(depth, float(found.max(initial=-np.inf)))
+                lists = [f.near(point, BEYOND) for point in points[part]]
+                row = np.repeat(np.arange(len(lists)), [len(index) for index in lists])
+                found = f.evaluate(points[part][row], np.concatenate(lists)).depth
+                np.maximum.at(depth, row, found)
             return depth
 
-        return np.array(in_parallel(work, (slice(row, row + 1) for row in range(len(points)))))
+        slices = (slice(row, min(row + TOGETHER, len(points))) for row in range(0, len(points), TOGETHER))
+        return np.concatenate([np.zeros(0), *in_parallel(work, slices)])
 
     def evaluate(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
         """As `DepthField.evaluate_bite`, for bites of any tool."""

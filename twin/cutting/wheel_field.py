@@ -64,12 +64,34 @@ class WheelField:
         best.depth[:] = np.where(miss < FAR, -np.inf, -miss)
         rows = np.flatnonzero(miss < FAR)
         names = ("depth", "s", "rho", "instant", *(["gradient"] if gradient else []))
-        for piece in range(self.bites):
-            one = self.evaluate_bite(points[rows], index[rows] * self.bites + piece, gradient=gradient)
-            deeper = np.flatnonzero(one.depth > best.depth[rows])
+        ceilings = self._ceilings(points[rows], index[rows])
+        for piece in np.argsort(-ceilings.sum(axis=1), kind="stable"):
+            here = rows[ceilings[piece] > best.depth[rows]]
+            one = self.evaluate_bite(points[here], index[here] * self.bites + piece, gradient=gradient)
+            deeper = np.flatnonzero(one.depth > best.depth[here])
             for name in names:
-                getattr(best, name)[rows[deeper]] = getattr(one, name)[deeper]
+                getattr(best, name)[here[deeper]] = getattr(one, name)[deeper]
         return best
+
+    def _ceilings(self, points: Floats, index: Ints) -> Floats:
+        """Upper bounds (pieces, m) of the depth in each piece of the outline over a window.
+
+        Depth is concave along the chord of a point's way, hence below its tangents at both ends; the way
+        itself keeps within `bow` of the chord.
+        """
+        local = self._touch.clamped(points)
+        first = self._touch.seen(local, self.passes.first[index])[0]
+        last = self._touch.seen(local, self.passes.last[index], before=True)[0]
+        way = last - first
+        over = np.zeros((self.bites, len(points)))
+        for number in range(self.bites):
+            piece = np.full(len(points), number)
+            (a, up), (b, down) = self._touch.depth(first, piece), self._touch.depth(last, piece)
+            rise, fall = (up * way).sum(axis=0), -(down * way).sum(axis=0)
+            peaked = (rise > 0) & (fall > 0)
+            share = np.where(peaked, (b + fall - a) / np.where(peaked, rise + fall, 1.0), 0.0)
+            over[number] = np.where(peaked, a + rise * np.clip(share, 0.0, 1.0), np.maximum(a, b))
+        return over + self.passes.bow[index] + ROUNDING
 
     def evaluate_bite(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
         """Depth in one piece of the outline alone, at the instant when it is the largest."""

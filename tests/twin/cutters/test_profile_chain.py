@@ -90,6 +90,13 @@ def test_every_piece_is_concave_and_inside_the_tooth(points, seed, brute_force):
             assert abs(s) <= piece.half_width
 
 
+@pytest.mark.parametrize("tip", [38.69658717152865, 40.0, 23.456789])
+def test_an_arc_that_ends_upright_is_as_wide_as_its_end(tip):
+    """Rounding must not lean its last side: drawn on, it would get ever wider."""
+    profile = tooth_profile(((0.6, 0.0, 0.4), (1.0, 0.4), (1.9, 3.5)), tip=tip, land=False)
+    assert [piece.half_width for piece in profile.pieces] == pytest.approx([1.0, 1.9])
+
+
 def test_neighbouring_pieces_overlap(brute_force):
     """Deep inside a stepped tooth no point lies between two pieces: the depth is all but the distance."""
     points = [[0.5, 0.0], [0.5, 1.0], [1.5, 1.0], [1.5, 2.0], [1.0, 2.0], [1.0, 3.0], [2.0, 4.0]]

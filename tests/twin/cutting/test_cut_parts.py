@@ -134,8 +134,8 @@ def test_wrong_ratio_destroys_the_teeth(gear, synthetic):
     # with a lead angle of 3.3° the crossing cuts leave next to nothing above the root
     assert wrong.remains.volume_mm3 < gear.remains.volume_mm3
     assert tips < TIP
-    # what is left is full of sharp edges, on which a vertex stands off by a share of the cell
-    assert wrong.largest_error_um < 0.1 * CELL * 1e3
+    # what is left is full of sharp edges: vertices stand on the cut there, too
+    assert wrong.largest_error_um < 0.1
 
 
 HEAD = PolygonHead(inserts=3, tip_radius_mm=40.0)

@@ -76,7 +76,7 @@ def mesh_of(removed):
         key[order], nothing, nothing, np.zeros(len(key), dtype=int), np.concatenate(rising)[order]
     )
     first = np.concatenate([[0], np.cumsum(SHEETS[case])])
-    quads = _quads(grid, Cells(cell, case, leaf, leaves.tangents), crossings, first)
+    quads = _quads(grid, Cells(cell, case, leaf), crossings, first)
     middle = np.repeat(cell, SHEETS[case], axis=0) + 0.5
     angle = grid.angle(middle[:, 1])
     r = 10.0 + middle[:, 0]

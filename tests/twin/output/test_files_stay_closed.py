@@ -115,6 +115,28 @@ def test_bars_of_air_that_touch_along_an_edge_stay_apart():
     assert volume(points, found) > volume(vertices, faces)
 
 
+def wedge(low, high):
+    """A bar along the z axis between two angles about it, its edge on the axis [rad]."""
+    section = [[0.0, 0.0], [np.cos(low), np.sin(low)], [np.cos(high), np.sin(high)]]
+    points = np.array([[*corner, z] for z in (0.0, 0.3, 1.0) for corner in section])
+    sides = [
+        [a, b, b + 3, a, b + 3, a + 3] for z in (0, 3) for a, b in ((z, z + 1), (z + 1, z + 2), (z + 2, z))
+    ]
+    return points, np.vstack([np.array(sides).reshape(-1, 3), [[0, 2, 1], [6, 7, 8]]])
+
+
+def test_wedges_that_lie_on_the_same_side_stay_apart():
+    """Both are drawn the same way, which does not part them."""
+    (one, faces), (other, _) = wedge(1.05, 1.45), wedge(1.7, 2.1)
+    vertices, faces = np.vstack([one, other]), np.vstack([faces, faces + len(one)])
+    assert volume(vertices, faces) > 0
+    points, found = snapped(vertices, faces)
+    again = np.unique(points.astype(np.float32), axis=0, return_inverse=True)[1].reshape(-1)[found]
+    assert_closed(again)
+    assert len(found) == len(faces)
+    assert np.abs(points[found] - vertices[faces]).max() <= 3 * grid_step(vertices)
+
+
 def test_a_fin_without_thickness_goes():
     cube = trimesh.creation.box()
     vertices = np.vstack([cube.vertices, [[2.0, 2.0, 2.0], [2.0, 2.0, 2.0 + 1e-9]]])
