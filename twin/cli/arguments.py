@@ -38,6 +38,25 @@ def add_budget(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     return budget
 
 
+def add_compensate(
+    commands: "argparse._SubParsersAction[argparse.ArgumentParser]",
+) -> argparse.ArgumentParser:
+    """`compensate`: probe how the part is clamped, and work around it."""
+    compensate = commands.add_parser(
+        "compensate", help="probe a badly clamped gear, compensate its program, compare both gears"
+    )
+    compensate.add_argument("job", type=Path, metavar="JOB", help="a job folder or a job.toml with [probe]")
+    compensate.add_argument(
+        "--out", type=Path, metavar="DIR", help="result folder (default: out/<job name>_compensated)"
+    )
+    compensate.add_argument("--ideal", action="store_true", help="axes follow their setpoints exactly")
+    compensate.add_argument(
+        "--cell-mm", type=float, metavar="MM", help="cell of the cutting grid (default: chosen)"
+    )
+    compensate.add_argument("--quiet", action="store_true", help="no progress")
+    return compensate
+
+
 def add_check(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     """`check`: the controller alone."""
     check = commands.add_parser("check", help="check a program without machine and metal")

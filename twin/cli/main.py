@@ -6,7 +6,16 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from twin.cli.arguments import add_bench, add_budget, add_check, add_explain, add_inspect, add_new, add_run
+from twin.cli.arguments import (
+    add_bench,
+    add_budget,
+    add_check,
+    add_compensate,
+    add_explain,
+    add_inspect,
+    add_new,
+    add_run,
+)
 from twin.errors import ExitCode, HobtwinError
 
 
@@ -69,6 +78,7 @@ def _parser() -> argparse.ArgumentParser:
         (add_explain, _explain),
         (add_new, _new),
         (add_budget, _budget),
+        (add_compensate, _compensate),
         (add_bench, _bench),
     ):
         add(commands).set_defaults(command=command)
@@ -109,6 +119,12 @@ def _inspect(options: argparse.Namespace) -> ExitCode:
     from twin.cli.inspect import inspect_command  # noqa: PLC0415
 
     return inspect_command(options)
+
+
+def _compensate(options: argparse.Namespace) -> ExitCode:
+    from twin.cli.compensate import compensate_command  # noqa: PLC0415
+
+    return compensate_command(options)
 
 
 def _bench(options: argparse.Namespace) -> ExitCode:
