@@ -15,7 +15,7 @@ from twin.progress import Lines, Silent
 
 
 def compensate_command(options: argparse.Namespace) -> ExitCode:
-    """Walk a job through probing, fit, compensation and both cuts. Raises HobtwinError and ControllerError."""
+    """Probe, fit, compensate, cut both gears. Raises HobtwinError and ControllerError."""
     cell = options.cell_mm
     if cell is not None and not (math.isfinite(cell) and cell > 0):
         raise InputError(f"--cell-mm {cell:g}", remedy="valid: above 0, for example 0.1")

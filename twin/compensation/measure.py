@@ -1,6 +1,7 @@
 """The probing cycle of a job, run on its machine, and the circle through what it touched."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -84,7 +85,7 @@ def _cycle(job: Job) -> tuple[Probe, Path]:
     return job.probe, program
 
 
-def _touches(common: dict[int, float | None], program: Path) -> tuple[Floats, Floats]:
+def _touches(common: Mapping[int, float | None], program: Path) -> tuple[Floats, Floats]:
     """Radii [mm] and angles [deg] of the touches that the cycle has left in its variables."""
     count = common.get(TOUCHES)
     if count is None or count != math.floor(count) or not 0 <= count <= MOST:
@@ -107,7 +108,7 @@ def _touches(common: dict[int, float | None], program: Path) -> tuple[Floats, Fl
     return table[:, 0], table[:, 1]
 
 
-def _figures(common: dict[int, float | None]) -> str:
+def _figures(common: Mapping[int, float | None]) -> str:
     """Where the cycle stood when it gave up."""
     names = {TOUCHES: "touches made", LAST: "last X, radius"}
     said = [f"{words} {_shown(common.get(k))}" for k, words in names.items() if k in common]

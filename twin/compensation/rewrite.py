@@ -1,8 +1,7 @@
-"""A straight program written anew with every place corrected: G00 and G01, block by block, as it would run."""
+"""A straight program written anew with every place corrected: G00 and G01, block by block, as it runs."""
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from controller.commands import (
@@ -188,7 +187,4 @@ class _Writer:
 
 def _number(value: float) -> str:
     """A number as a program has it, without minus zero, always with its point."""
-    text = f"{round(value, DIGITS) + 0.0:.{DIGITS}f}".rstrip("0")
-    return text
-
-
+    return f"{round(value, DIGITS) + 0.0:.{DIGITS}f}".rstrip("0")

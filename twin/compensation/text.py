@@ -18,8 +18,8 @@ def lines(found: Compensation) -> list[str]:
         f"probed: {len(measured.radius_mm)} touches in {measured.time_s:.1f} s, band as touched "
         f"Ø {2 * centre.geometric.radius:.4f} mm, out of round {centre.out_of_round_mm * 1e3:.2f} µm",
         *(
-            f"  {name:<22} e {circle.eccentricity:.5f} mm, phi {_phase(circle):.3f}°"
-            for name, circle in _fits(found)
+            f"  {name:<22} e {circle.eccentricity:.5f} mm, phi {phase_deg(circle):.3f}°"
+            for name, circle in fits(found)
         ),
         f"  uncertainty of the centre, 95 %: {centre.uncertainty_mm * 1e3:.2f} µm; as F_p "
         f"{figures_of_uncertainty(found)['cumulative_pitch_um']:.2f} µm",
@@ -43,13 +43,18 @@ def lines(found: Compensation) -> list[str]:
 def figures_of_uncertainty(found: Compensation) -> dict[str, float]:
     """What the uncertainty of the centre leaves of F_p and F_r [µm]: as an eccentricity of that size."""
     rest = 2e3 * found.measurement.centre.uncertainty_mm
-    return {"cumulative_pitch_um": rest / math.cos(found.gear.transverse_pressure), "runout_um": rest}
+    return {"cumulative_pitch_um": rest / _cosine(found), "runout_um": rest}
 
 
 def theory(found: Compensation) -> dict[str, float]:
     """F_p and F_r of a gear that nobody compensates, from the measured e [µm]."""
     e = 2e3 * found.measurement.centre.geometric.eccentricity
-    return {"cumulative_pitch_um": e / math.cos(found.gear.transverse_pressure), "runout_um": e}
+    return {"cumulative_pitch_um": e / _cosine(found), "runout_um": e}
+
+
+def _cosine(found: Compensation) -> float:
+    """Of the pressure angle on the circle where pitch is measured; cos α_t without profile shift."""
+    return found.gear.base_diameter / found.gear.measuring_diameter
 
 
 def remaining_slope_um(found: Compensation) -> float:
@@ -107,9 +112,9 @@ def as_json(found: Compensation) -> dict[str, object]:
                 "y_mm": circle.y,
                 "radius_mm": circle.radius,
                 "e_mm": circle.eccentricity,
-                "phi_deg": _phase(circle),
+                "phi_deg": phase_deg(circle),
             }
-            for name, circle in _fits(found)
+            for name, circle in fits(found)
         },
         "out_of_round_mm": centre.out_of_round_mm,
         "uncertainty_mm": centre.uncertainty_mm,
@@ -138,13 +143,15 @@ def as_json(found: Compensation) -> dict[str, object]:
     }
 
 
-def _fits(found: Compensation) -> list[tuple[str, Circle]]:
+def fits(found: Compensation) -> list[tuple[str, Circle]]:
+    """The circles that were fitted, by name."""
     centre = found.measurement.centre
     fits = [("patent", centre.patent), ("geometric", centre.geometric)]
     return fits if found.measurement.macro is None else [*fits, ("cycle (Macro B)", found.measurement.macro)]
 
 
-def _phase(circle: Circle) -> float:
+def phase_deg(circle: Circle) -> float:
+    """φ from 0 to 360 [deg]."""
     return math.degrees(circle.phase) % 360.0
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.language.source import load_program
+from twin.advice.dry import advised_run
 from twin.compensation.measure import Measurement, measure
 from twin.compensation.removal import Removal, removal
 from twin.compensation.rewrite import Rewritten, rewritten
@@ -24,7 +25,6 @@ from twin.probing.law import GapCorrection, plain_correction, require_inside, tu
 from twin.progress import Reporter
 from twin.run import run_job
 from twin.setup import make_ready
-from twin.advice.dry import advised_run
 
 Floats = NDArray[np.float64]
 

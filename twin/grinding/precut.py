@@ -17,6 +17,8 @@ FLANK_POINTS = 40
 FILLET_POINTS = 12
 OVER = 0.1
 """modules that the section goes on beyond the blank's largest diameter"""
+STEP = 1e-9
+"""[rad] by which each point of a side stands further round than the one below it"""
 POINTED = 0.02
 """modules of tooth thickness at which the section's teeth end at the latest"""
 
@@ -74,6 +76,9 @@ class PrecutGear:
         half = np.vstack([gap.fillet(FILLET_POINTS)[0], gap.flank(roll)[0]])
         keep = np.concatenate([[True], np.hypot(*np.diff(half, axis=0).T) > 1e-9])
         side = half[keep] @ [1.0, 1j]
+        # a flank that is radial inside its base circle goes on by so little
+        outwards = np.maximum.accumulate(np.angle(side)) + STEP * np.arange(len(side))
+        side = np.abs(side) * np.exp(1j * outwards)
         one = np.concatenate([side.conj()[::-1], side])
         middles = math.radians(self.gap_phase_deg) + 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
         around = (np.exp(1j * middles)[:, None] * one).ravel()

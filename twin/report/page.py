@@ -71,7 +71,7 @@ def _css_string(text: str) -> str:
     return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text) + '"'
 
 
-def _lowered(text: str) -> Markup:
+def lowered(text: str) -> Markup:
     """Text for HTML, what stands in `_{…}` as subscript."""
     return Markup(_SUBSCRIPT.sub(r"<sub>\1</sub>", str(escape(text))))
 
@@ -84,4 +84,4 @@ _ENVIRONMENT = Environment(
     lstrip_blocks=True,
 )
 _ENVIRONMENT.globals["number"] = number
-_ENVIRONMENT.filters["lowered"] = _lowered
+_ENVIRONMENT.filters["lowered"] = lowered
