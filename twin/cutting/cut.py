@@ -14,6 +14,7 @@ from twin.cutting.dual import Cells, Surface, contour
 from twin.cutting.engagement import StockCylinder, axes_apart, scraped
 from twin.cutting.fields import tool_field
 from twin.cutting.grid import Grid
+from twin.cutting.moments import face_moments, moments
 from twin.cutting.motion import CutterMotion
 from twin.cutting.plan import CORE, plan_grid
 from twin.cutting.refine import refine
@@ -45,6 +46,8 @@ class CutResult:
     """cutting passes that came near the stock"""
     pairs: int
     """pairs of block and pass evaluated while searching for the surface"""
+    face_time_s: Floats
+    """(m,) when each face of the part was cut, by the deepest bite there; NaN on what is left of the blank"""
     checked: int
     """vertices of the cut surface held against all passes"""
     largest_error_um: float
@@ -96,7 +99,9 @@ def cut(
         surface, errors, facets = made.surface, made.errors, made.facets
         notes += made.notes
     progress("cutting the blank", 0.9)
-    remains = subtract(blank, *([surface] if surface else []))
+    surfaces = [surface] if surface else []
+    remains = subtract(blank, *surfaces)
+    times = [moments(sweep, tuple(motion for _, motion in tools), one) for one in surfaces]
     notes += _severed(remains)
     progress("done", 1.0)
     return CutResult(
@@ -105,6 +110,7 @@ def cut(
         cell_mm=cells,
         passes=sweep.passes,
         pairs=pairs,
+        face_time_s=face_moments(remains.origin, [one.faces for one in surfaces], times),
         checked=len(errors.distance),
         largest_error_um=errors.largest_um,
         facet_error_um=facets.largest_um,
@@ -163,6 +169,7 @@ def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: 
             return None
         found.append(strokes)
     tubes = [tube for strokes in found for tube in strokes.tubes]
+    times = [time for strokes in found for time in strokes.times]
     remains = subtract(blank, *tubes)
     return CutResult(
         remains=remains,
@@ -170,6 +177,7 @@ def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: 
         cell_mm=(0.5 * cell, 0.5 * cell, cell),
         passes=len(tubes),
         pairs=sum(len(tube.vertices) for tube in tubes),
+        face_time_s=face_moments(remains.origin, [tube.faces for tube in tubes], times),
         checked=sum(len(strokes.vertices.distance) for strokes in found),
         largest_error_um=max(strokes.vertices.largest_um for strokes in found),
         facet_error_um=max(strokes.facets.largest_um for strokes in found),
@@ -190,12 +198,14 @@ def _rubbing(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...]) -> li
 
 def _uncut(blank: Blank, notes: tuple[str, ...]) -> CutResult:
     """The blank as it was."""
+    remains = subtract(blank)
     return CutResult(
-        remains=subtract(blank),
+        remains=remains,
         method="none",
         cell_mm=(0.0, 0.0, 0.0),
         passes=0,
         pairs=0,
+        face_time_s=np.full(len(remains.faces), np.nan),
         checked=0,
         largest_error_um=0.0,
         facet_error_um=0.0,

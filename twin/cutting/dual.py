@@ -5,7 +5,7 @@ surface exactly, those of ridges and edges onto all the bites that meet there.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,8 @@ class Surface:
     """(n, 3) [mm]"""
     faces: Ints
     """(m, 3)"""
+    bite: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    """(n,) the bite that made each vertex, −1 = none; (0,) where nobody told"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +63,10 @@ def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings, leaves
     vertices = _onto_edges(sweep, vertices, (spread > FEATURE) & ~closed, sheets, longest)
     ground = Ground(sweep, grid, leaves)
     around = Around(sheets.owner, sheets.row, cells.leaf[sheets.cell])
-    vertices = landed(ground, vertices, np.flatnonzero(~closed), around, crossings)
+    bite = np.full(len(vertices), -1, dtype=np.int64)
+    vertices, bite[~closed] = landed(ground, vertices, np.flatnonzero(~closed), around, crossings)
     quads = _quads(grid, cells, crossings, first)
-    return Surface(vertices, _triangles(vertices, normals, quads))
+    return Surface(vertices, _triangles(vertices, normals, quads), bite)
 
 
 @dataclass(frozen=True, slots=True)

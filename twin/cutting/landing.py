@@ -17,6 +17,7 @@ from twin.cutting.sweep import Deepest, Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 SETTLED = 1e-5
 """[mm] of depth at which a vertex stands on the surface"""
@@ -68,20 +69,26 @@ class Around:
     """(n,) the finest block of each sheet"""
 
 
-def landed(ground: Ground, points: Floats, rows: Ints, around: Around, crossings: Crossings) -> Floats:
-    """Bring the vertices `rows` of some sheets (n, 3) onto the surface."""
+def landed(
+    ground: Ground, points: Floats, rows: Ints, around: Around, crossings: Crossings
+) -> tuple[Floats, Ints]:
+    """Bring the vertices `rows` (m,) of some sheets (n, 3) onto the surface; their deepest bites (m,)."""
     points = points.copy()
-    left, found = _newton(ground, points, rows, around.leaf)
-    if len(left):
+    bite, lost, found = _newton(ground, points, rows, around.leaf)
+    if lost.any():
+        left = rows[lost]
         points[left] = _between(ground, (points[left], found), left, around, crossings)
-    return points
+        bite[lost] = ground.field(points[left], around.leaf[left]).bite
+    return points, bite
 
 
-def _newton(ground: Ground, points: Floats, rows: Ints, leaf: Ints) -> tuple[Ints, Deepest]:
-    """Move the vertices `rows`; returns those that do not settle, put back, and the field there."""
+def _newton(ground: Ground, points: Floats, rows: Ints, leaf: Ints) -> tuple[Ints, Bools, Deepest]:
+    """Move the vertices `rows`; returns their deepest bites, which do not settle, put back, and the field
+    there."""
     longest = 0.5 * min(ground.grid.cell_mm)
     start = points[rows]
     first = found = ground.field(start, leaf[rows])
+    bite = first.bite.copy()
     at = np.arange(len(rows))
     lost = np.zeros(len(rows), dtype=bool)
     for step_number in range(STEPS + 1):
@@ -101,8 +108,9 @@ def _newton(ground: Ground, points: Floats, rows: Ints, leaf: Ints) -> tuple[Int
         at = at[near]
         points[rows[at]] = there[near]
         found = ground.field(points[rows[at]], leaf[rows[at]])
+        bite[at] = found.bite
     points[rows[lost]] = start[lost]
-    return rows[lost], first.of(lost)
+    return bite, lost, first.of(lost)
 
 
 def _between(

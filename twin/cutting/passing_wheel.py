@@ -32,7 +32,9 @@ def standing_wheel(profile: ToothProfile) -> "PassingWheel":
     # beyond the tip it goes on falling, so that the way back to the wheel is uphill from anywhere
     rho, low = np.append(rho, 2.0 * profile.tip), np.append(low, low[-1] - profile.tip)
     nowhere = np.zeros((0, 3))
-    return PassingWheel(profile=profile, centre=nowhere, axis=nowhere, rho=rho, half=low)
+    return PassingWheel(
+        profile=profile, time_s=nowhere[:, 0], centre=nowhere, axis=nowhere, rho=rho, half=low
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +42,8 @@ class PassingWheel:
     """The wheel in the part's frame, sample by sample."""
 
     profile: ToothProfile
+    time_s: Floats
+    """(n,)"""
     centre: Floats
     """(n, 3) [mm]"""
     axis: Floats
@@ -67,7 +71,7 @@ class PassingWheel:
             centre=np.column_stack([np.interp(at, own, column) for column in centre.T]),
         )
         centre, axis, _ = part_frame(finer)
-        return replace(self, centre=centre, axis=axis)
+        return replace(self, time_s=np.interp(at, own, motion.time_s[part]), centre=centre, axis=axis)
 
     def level(self, points: Floats, sample: Ints) -> Floats:
         """Above 0 inside the wheel, at points (m, 3) and samples (m,)."""

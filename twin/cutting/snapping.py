@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 FINEST = 2.0**-17
 """[mm] of the grid at least: 7.6 nm"""
@@ -31,15 +32,16 @@ def grid_step(vertices: Floats) -> float:
     return max(2.0 ** (math.frexp(largest)[1] - MANTISSA + 1), FINEST)
 
 
-def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints, Ints]:
     """Move vertices (n, 3) [mm] onto the grid and join those that meet there; faces (m, 3).
 
     Faces that lose a side go, and so do two that become each other's back: a closed 2-manifold stays one.
+    Returns the vertices, the faces that are left, and which (k,) those were.
     """
     step = grid_step(vertices)
     nearest = np.rint(vertices / step).astype(np.int64)
     places = nearest.copy()
-    left, number, met = _joined(places, faces)
+    left, kept, number, met = _joined(places, faces)
     rng = np.random.default_rng(0)
     for turn in range(ROUNDS):
         apart = np.isin(number, _of_shared_edges(left[met[left].any(axis=1)])) & met[number]
@@ -49,24 +51,24 @@ def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
         if turn:
             # what is drawn the same way stays together: any other way does
             places[apart] += rng.integers(-1, 2, (apart.sum(), 3))
-        left, number, met = _joined(places, faces)
+        left, kept, number, met = _joined(places, faces)
     first = np.zeros(len(met), dtype=np.int64)
     first[number] = np.arange(len(number))
     used = np.zeros(len(met), dtype=bool)
     used[left] = True
-    return places[first[used]] * np.float64(step), (np.cumsum(used) - 1)[left]
+    return places[first[used]] * np.float64(step), (np.cumsum(used) - 1)[left], np.flatnonzero(kept)
 
 
-def _joined(places: Ints, faces: Ints) -> tuple[Ints, Ints, NDArray[np.bool_]]:
-    """The faces left when vertices at one place are one, the number of each vertex among the places, and
-    which numbers (k,) stand for more than one vertex."""
+def _joined(places: Ints, faces: Ints) -> tuple[Ints, Bools, Ints, Bools]:
+    """The faces left when vertices at one place are one, which (m,) those are, the number of each vertex
+    among the places, and which numbers (k,) stand for more than one vertex."""
     number = _numbers(places)
     met = np.bincount(number) > 1
     named = number[faces]
     left = np.ones(len(faces), dtype=bool)
     here = np.flatnonzero(met[named].any(axis=1))  # nothing changes elsewhere
     left[here] = _stays(named[here])
-    return named[left], number, met
+    return named[left], left, number, met
 
 
 def _numbers(places: Ints) -> Ints:
@@ -78,7 +80,7 @@ def _numbers(places: Ints) -> Ints:
     return number
 
 
-def _stays(faces: Ints) -> NDArray[np.bool_]:
+def _stays(faces: Ints) -> Bools:
     """Whether a face has three vertices and no back: another on the same ones that looks the opposite way."""
     a, b, c = faces.T
     ordered = np.sort(faces, axis=1)

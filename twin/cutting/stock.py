@@ -54,9 +54,18 @@ def lathe(outline: Floats, segments: int) -> manifold3d.Manifold:
     return solid(np.concatenate(points), triangles[~flat])
 
 
-def solid(vertices: Floats, faces: Ints) -> manifold3d.Manifold:
-    """A manifold3d solid in double precision. Raises PartError where the mesh is no closed 2-manifold."""
-    made = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64)))
+def solid(vertices: Floats, faces: Ints, number: int | None = None) -> manifold3d.Manifold:
+    """A manifold3d solid in double precision, under a reserved `number` to know its faces by later.
+
+    Raises PartError where the mesh is no closed 2-manifold.
+    """
+    run = None if number is None else np.array([0, faces.size], dtype=np.uint64)
+    name = None if number is None else np.array([number], dtype=np.uint32)
+    own = None if number is None else np.arange(len(faces), dtype=np.uint64)
+    mesh = manifold3d.Mesh64(
+        vertices, faces.astype(np.uint64), run_index=run, run_original_id=name, face_id=own
+    )
+    made = manifold3d.Manifold(mesh)
     if made.status() != manifold3d.Error.NoError:
         raise PartError(f"the cut surface is no closed solid ({made.status().name})")
     return made
@@ -76,12 +85,16 @@ class Remains:
     loose_volumes_mm3: tuple[float, ...]
     """of the pieces that the cut severed, largest first"""
     genus: int
+    origin: Ints
+    """(m,) face of the removed surfaces, counted through all of them, that each face is a piece of;
+    −1 = of the blank's skin"""
 
 
 def subtract(blank: Blank, *surfaces: Surface) -> Remains:
     """One boolean: the blank without the removed solids. The largest piece is the part."""
     whole = blank_solid(blank)
-    removed = [solid(surface.vertices, surface.faces) for surface in surfaces]
+    first_id = manifold3d.Manifold.reserve_ids(max(len(surfaces), 1))
+    removed = [solid(surface.vertices, surface.faces, first_id + k) for k, surface in enumerate(surfaces)]
     left = manifold3d.Manifold.batch_boolean([whole, *removed], manifold3d.OpType.Subtract)
     if left.is_empty():
         raise PartError(
@@ -90,7 +103,10 @@ def subtract(blank: Blank, *surfaces: Surface) -> Remains:
     pieces = sorted(left.decompose(), key=lambda piece: -piece.volume())
     part = pieces[0]
     mesh = part.to_mesh64()
-    vertices, faces = snapped(np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, dtype=np.int64))
+    vertices, faces, kept = snapped(
+        np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, dtype=np.int64)
+    )
+    first_face = np.cumsum([0, *(len(surface.faces) for surface in surfaces)])
     return Remains(
         vertices=vertices,
         faces=faces,
@@ -98,4 +114,14 @@ def subtract(blank: Blank, *surfaces: Surface) -> Remains:
         blank_volume_mm3=whole.volume(),
         loose_volumes_mm3=tuple(piece.volume() for piece in pieces[1:]),
         genus=part.genus(),
+        origin=_origin(mesh, first_id, first_face)[kept],
     )
+
+
+def _origin(mesh: manifold3d.Mesh64, first_id: int, first_face: Ints) -> Ints:
+    """(m,) for each face of a result, the face it is a piece of among those of the solids with the ids from
+    `first_id` on, whose faces begin at `first_face` (k + 1,); −1 for any other solid."""
+    runs = np.diff(np.array(mesh.run_index, dtype=np.int64)) // 3
+    number = np.repeat(np.array(mesh.run_original_id, dtype=np.int64) - first_id, runs)
+    own = (number >= 0) & (number < len(first_face) - 1)
+    return np.where(own, first_face[np.where(own, number, 0)] + np.array(mesh.face_id, dtype=np.int64), -1)

@@ -52,6 +52,8 @@ class Strokes:
 
     tubes: tuple[Surface, ...]
     """one for each stroke"""
+    times: tuple[Floats, ...]
+    """when the wheel made the vertices (n,) of each [s]; NaN beyond the blank"""
     vertices: Errors
     """of random vertices from the envelope of their stroke"""
     facets: Errors
@@ -75,12 +77,14 @@ def find_strokes(blank: Blank, cutter: Cutter, motion: CutterMotion, cell: float
     if layers is None:
         return None
     rng = np.random.default_rng(0)
-    tubes, vertices, facets = [], [], []
+    tubes, times, vertices, facets = [], [], [], []
     for wheel in wheels:
-        tube = _tube(blank, wheel, layers, cell)
-        if tube is None:
+        made = _tube(blank, wheel, layers, cell)
+        if made is None:
             return None
+        tube, when = made
         tubes.append(tube)
+        times.append(when)
         share = math.ceil(CHECKED / len(runs))
         for errors, points in (
             (vertices, tube.vertices),
@@ -89,7 +93,7 @@ def find_strokes(blank: Blank, cutter: Cutter, motion: CutterMotion, cell: float
             inside = np.flatnonzero(blank.contains(points))
             chosen = points[rng.choice(inside, min(share, len(inside)), replace=False)]
             errors.append(Errors(chosen, np.abs(wheel.held(chosen))))
-    return Strokes(tubes=tuple(tubes), vertices=_joined(vertices), facets=_joined(facets))
+    return Strokes(tubes=tuple(tubes), times=tuple(times), vertices=_joined(vertices), facets=_joined(facets))
 
 
 def _joined(errors: list[Errors]) -> Errors:
@@ -134,8 +138,9 @@ class _Fan:
     """(k,) to the wheel's outline, about [mm]"""
 
 
-def _tube(blank: Blank, wheel: PassingWheel, layers: Floats, cell: float) -> Surface | None:
-    """The tube of one stroke; None where it does not pass all layers at depth, or a ray tells otherwise."""
+def _tube(blank: Blank, wheel: PassingWheel, layers: Floats, cell: float) -> tuple[Surface, Floats] | None:
+    """The tube of one stroke and when its vertices came to be [s]; None where it does not pass all layers at
+    depth, or a ray tells otherwise."""
     tip = wheel.profile.tip
     reach = np.hypot(*wheel.centre[:, :2].T)
     at_depth = np.flatnonzero(reach < reach.min() + DEEPEST)
@@ -167,11 +172,12 @@ def _tube(blank: Blank, wheel: PassingWheel, layers: Floats, cell: float) -> Sur
     found = _ways_out(wheel, fan, np.repeat(sample, m))
     if found is None:
         return None
-    points = found.reshape(n, m, 3)
+    points = found[0].reshape(n, m, 3)
     lips = np.hypot(points[:, [0, -1], 0], points[:, [0, -1], 1])
     if lips.min() <= blank.radius:
         return None
-    return _closed(points, np.column_stack([origin, layers]))
+    when = np.pad(wheel.time_s[found[1]].reshape(n, m), ((0, 0), (0, 1)), constant_values=np.nan)
+    return _closed(points, np.column_stack([origin, layers])), when.ravel()
 
 
 def _directions(
@@ -198,8 +204,9 @@ def _directions(
     return np.concatenate([-angle[:0:-1], angle]), np.concatenate([length[:0:-1], length])
 
 
-def _ways_out(wheel: PassingWheel, fan: _Fan, sample: Ints) -> Floats | None:
-    """(k, 3) where the rays leave what the wheel sweeps; None where one begins outside or comes in again.
+def _ways_out(wheel: PassingWheel, fan: _Fan, sample: Ints) -> tuple[Floats, Ints] | None:
+    """(k, 3) where the rays leave what the wheel sweeps, and at which samples (k,) it does that; None where
+    one begins outside or comes in again.
 
     `sample` (k,): when the wheel passes the rays' layers.
     """
@@ -228,8 +235,8 @@ def _ways_out(wheel: PassingWheel, fan: _Fan, sample: Ints) -> Floats | None:
     return _onto_outline(wheel, on_ray(way), rays, sample)
 
 
-def _onto_outline(wheel: PassingWheel, points: Floats, rays: Floats, sample: Ints) -> Floats:
-    """The points moved along their rays onto the profile itself, which the table follows nearly."""
+def _onto_outline(wheel: PassingWheel, points: Floats, rays: Floats, sample: Ints) -> tuple[Floats, Ints]:
+    """The points moved along their rays onto the profile itself, which the table follows nearly, and when."""
     for _ in range(POLISH):
         sample, _ = wheel.uphill(points, sample, NEARBY)
         away = points - wheel.centre[sample]
@@ -241,7 +248,7 @@ def _onto_outline(wheel: PassingWheel, points: Floats, rays: Floats, sample: Int
         slope = by_s * along + by_rho * outwards
         step = np.where(slope < -0.05, -depth / np.minimum(slope, -0.05), 0.0)
         points = points + np.clip(step, -0.02, 0.02)[:, None] * rays
-    return points
+    return points, sample
 
 
 def _closed(points: Floats, origin: Floats) -> Surface:

@@ -179,5 +179,9 @@ class Sweep:
         in_parallel(work, batches(np.concatenate([[0], np.cumsum(length[some])]), LISTED))
         return Deepest(depth, slope, winner)
 
+    def tool(self, bite: Ints) -> Ints:
+        """Number (m,) of the tool that each bite belongs to."""
+        return np.searchsorted(self._first, bite, side="right") - 1
+
     def _of(self, n: int, index: Ints) -> NDArray[np.bool_]:
         return (index >= self._first[n]) & (index < self._first[n + 1])

@@ -60,7 +60,7 @@ def test_slivers_below_single_precision_leave_no_gap(tmp_path, suffix, size):
     vertices, faces = split_apart(np.array(ball.vertices), np.array(ball.faces), rng, apart=0.2 * step)
     assert_closed(faces)
     writer, unit = WRITERS[suffix]
-    writer(tmp_path / f"part.{suffix}", *snapped(vertices, faces))
+    writer(tmp_path / f"part.{suffix}", *snapped(vertices, faces)[:2])
     points, found = as_read(tmp_path / f"part.{suffix}", unit)
     assert_closed(found)
     assert len(found) < len(faces)
@@ -95,12 +95,13 @@ def test_bars_that_touch_along_an_edge_stay_apart():
     joined = np.unique(vertices.round(6) + 0.0, axis=0, return_inverse=True)[1].reshape(-1)[faces]
     with pytest.raises(AssertionError):
         assert_closed(joined)
-    points, found = snapped(vertices, faces)
+    points, found, kept = snapped(vertices, faces)
     again = np.unique(points.astype(np.float32), axis=0, return_inverse=True)[1].reshape(-1)[found]
     assert_closed(again)
     assert np.abs(points - points.round(2)).max() <= 2 * grid_step(vertices)
     # drawn apart, not into each other
     assert volume(points, found) < volume(vertices, faces)
+    assert kept.tolist() == list(range(len(faces)))
 
 
 def test_bars_of_air_that_touch_along_an_edge_stay_apart():
@@ -109,10 +110,11 @@ def test_bars_of_air_that_touch_along_an_edge_stay_apart():
     vertices, faces = touching_bars()
     vertices = np.vstack([vertices, block.vertices])
     faces = np.vstack([faces[:, ::-1], np.array(block.faces) + len(vertices) - 8])
-    points, found = snapped(vertices, faces)
+    points, found, kept = snapped(vertices, faces)
     again = np.unique(points.astype(np.float32), axis=0, return_inverse=True)[1].reshape(-1)[found]
     assert_closed(again)
     assert volume(points, found) > volume(vertices, faces)
+    assert kept.tolist() == list(range(len(faces)))
 
 
 def wedge(low, high):
@@ -130,7 +132,7 @@ def test_wedges_that_lie_on_the_same_side_stay_apart():
     (one, faces), (other, _) = wedge(1.05, 1.45), wedge(1.7, 2.1)
     vertices, faces = np.vstack([one, other]), np.vstack([faces, faces + len(one)])
     assert volume(vertices, faces) > 0
-    points, found = snapped(vertices, faces)
+    points, found, kept = snapped(vertices, faces)
     again = np.unique(points.astype(np.float32), axis=0, return_inverse=True)[1].reshape(-1)[found]
     assert_closed(again)
     assert len(found) == len(faces)
@@ -141,17 +143,19 @@ def test_a_fin_without_thickness_goes():
     cube = trimesh.creation.box()
     vertices = np.vstack([cube.vertices, [[2.0, 2.0, 2.0], [2.0, 2.0, 2.0 + 1e-9]]])
     fin = [[0, 1, 8], [0, 8, 9], [0, 9, 1], [1, 9, 8]]
-    points, found = snapped(vertices, np.vstack([cube.faces, fin]))
+    points, found, kept = snapped(vertices, np.vstack([cube.faces, fin]))
     assert_closed(found)
     assert len(found) == 12
+    assert kept.tolist() == list(range(12))
     assert len(points) == 8
     assert volume(points, found) == 1.0
 
 
 def test_a_mesh_on_the_grid_comes_back_as_it_was():
     cube = trimesh.creation.box()
-    points, found = snapped(np.array(cube.vertices), np.array(cube.faces))
+    points, found, kept = snapped(np.array(cube.vertices), np.array(cube.faces))
     again = snapped(points, found)
     assert np.array_equal(again[0], points)
     assert np.array_equal(again[1], found)
+    assert kept.tolist() == again[2].tolist() == list(range(12))
     assert volume(points, found) == 1.0

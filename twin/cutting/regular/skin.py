@@ -34,6 +34,8 @@ class Skin:
     """(gaps, nu, nz, 3) [mm]"""
     rising: NDArray[np.bool_]
     """(gaps, nu - 1, nz - 1) whether four neighbouring vertices are split from the first to the last"""
+    bite: Ints
+    """(gaps, nu, nz) the deepest bite at each vertex"""
 
 
 def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: float) -> Skin:
@@ -44,9 +46,11 @@ def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: 
     guess = _meet(points, normals)
     block = home.reshape(-1)
     vertices = np.ascontiguousarray(guess.reshape(-1, 3))
+    bite = np.zeros(len(vertices), dtype=np.int64)
     left = np.arange(len(vertices))
     for _ in range(ROUNDS):
         found = sweep.deepest(vertices[left], block[left], tangents, gradient=True)
+        bite[left] = found.bite
         step = found.depth / np.einsum("nx,nx->n", found.gradient, found.gradient)
         vertices[left] -= step[:, None] * found.gradient
         left = left[np.abs(step) > SETTLED]
@@ -55,7 +59,7 @@ def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: 
     inner = points[:, 1:-1, 1:-1], normals[:, 1:-1, 1:-1]
     one = _off(*inner, vertices[:, :-1, :-1] + vertices[:, 1:, 1:])
     other = _off(*inner, vertices[:, 1:, :-1] + vertices[:, :-1, 1:])
-    return Skin(vertices, one < other)
+    return Skin(vertices, one < other, bite.reshape(vertices.shape[:3]))
 
 
 def _off(points: Floats, normals: Floats, ends: Floats) -> Floats:

@@ -36,7 +36,9 @@ def tubes(chart: Chart, made: Skin) -> Surface:
     step = chart.z[1] - chart.z[0]
     low[..., 2], high[..., 2] = chart.z[0] - step, chart.z[-1] + step
     vertices = (np.concatenate([low, ring, high], axis=2) - shift) @ rotation
-    return Surface(vertices.reshape(-1, 3), _faces(made.rising))
+    # no bite made the lid and the ends
+    bite = np.pad(made.bite, ((0, 0), (0, 1), (1, 1)), constant_values=-1)
+    return Surface(vertices.reshape(-1, 3), _faces(made.rising), bite.reshape(-1))
 
 
 def _faces(rising: Bools) -> Ints:
