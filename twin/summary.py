@@ -35,7 +35,12 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
         rotary_axes=_rotary(outcome),
         sync_error_arcsec=_sync_error(outcome.session.recording),
         messages=messages(outcome),
-        part=Part(vertices=remains.vertices, faces=remains.faces, deviation_um=deviation_um),
+        part=Part(
+            vertices=remains.vertices,
+            faces=remains.faces,
+            deviation_um=deviation_um,
+            face_time_s=outcome.cut.face_time_s,
+        ),
         inspection=outcome.inspection,
         programs=_programs(outcome),
         tools=tuple(

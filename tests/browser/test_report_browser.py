@@ -3,6 +3,7 @@
 import io
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -219,6 +220,70 @@ def test_a_block_is_chosen_by_click_by_keys_and_from_a_plot(open_page, sample):
         position={"x": (left + 0.7 * width) * scale, "y": (top + height / 2) * scale}
     )
     assert chosen() == "7"
+    assert opened.said == []
+
+
+TWO_ENDS = """async (pixel) => {
+  const canvas = document.querySelector(".stage canvas");
+  const gl = canvas.getContext("webgl2");
+  document.querySelector('[data-view="side"]').click();
+  await new Promise((done) => requestAnimationFrame(done));
+  const pixels = new Uint8Array(4 * canvas.width * canvas.height);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const green = [], covered = [];
+  for (let k = 0; k < canvas.width * canvas.height; k++) {
+    const [r, g, b, a] = pixels.subarray(4 * k, 4 * k + 4), row = Math.floor(k / canvas.width);
+    if (a) covered.push(row);
+    if (a && g > r + 40 && g > b + 20) green.push(row);
+  }
+  const most = (all) => all.reduce((x, y) => Math.max(x, y), -1);
+  const least = (all) => all.reduce((x, y) => Math.min(x, y), 1e9);
+  return { green: green.length, covered: covered.length, low: least(green), high: most(green),
+           bottom: least(covered), top: most(covered), scale: canvas.width / canvas.clientWidth };
+}"""
+
+
+def test_a_block_shows_what_it_cut_and_is_found_by_it(open_page, sample):
+    """The upper half was cut by line 5, the lower by line 7, the bore and the rear by nobody."""
+    part = sample.gear_part(around=60, along=21)
+    z = part.vertices[part.faces][..., 2]
+    turned = np.hypot(*part.vertices[part.faces][..., :2].T).T > 12.0
+    recording = sample.report().recording
+    middle = [recording.time_s[recording.block == k].mean() for k in (1, 3)]
+    half = np.where((z >= -10.0 - 1e-9).all(axis=1), middle[0], middle[1])
+    time = np.where(turned.all(axis=1), half, np.nan)
+    opened = open_page(sample.report(part=replace(part, face_time_s=time)))
+    opened.tab("process")
+    opened.part()
+    page = opened.page
+
+    def shown(line):
+        page.click(f"#line-0-{line}")
+        return page.evaluate(TWO_ENDS)
+
+    upper, lower, none = shown(5), shown(7), shown(8)
+    assert none["green"] == 0
+    assert "Nothing of the finished surface is its work" in page.inner_text(".chosen-block")
+    height = upper["top"] - upper["bottom"]
+    assert (upper["low"] - upper["bottom"]) / height == pytest.approx(0.5, abs=0.02)
+    assert (upper["high"] - upper["bottom"]) / height == pytest.approx(1.0, abs=0.02)
+    assert (lower["low"] - lower["bottom"]) / height == pytest.approx(0.0, abs=0.02)
+    assert (lower["high"] - lower["bottom"]) / height == pytest.approx(0.5, abs=0.02)
+    assert upper["green"] + lower["green"] == pytest.approx(upper["covered"], rel=0.05)
+    # half of the surface each, in words
+    page.click("#line-0-5")
+    words = page.inner_text(".chosen-block")
+    a, b, c = part.vertices[part.faces].transpose(1, 0, 2)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    assert f"{area[time == middle[0]].sum():.1f} mm²" in words
+    assert "50.0 %" in words
+    # and from the part to the block
+    box = page.locator(".stage canvas").bounding_box()
+    centre = box["x"] + box["width"] / 2
+    for line, share in ((7, 0.25), (5, 0.75)):
+        row = lower["bottom"] + share * height
+        page.mouse.click(centre, box["y"] + box["height"] - row / lower["scale"])
+        assert page.inner_text(".line[aria-selected] .n") == str(line)
     assert opened.said == []
 
 

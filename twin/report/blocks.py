@@ -57,8 +57,7 @@ def block_facts(recording: Recording) -> tuple[BlockFacts, ...]:
     last = np.concatenate([first[1:] - 1, [n - 1]])
     before = np.maximum(first - 1, 0)
     places = [(block.file, block.line) for block in recording.blocks]
-    number = {place: k for k, place in enumerate(dict.fromkeys(places))}
-    line = np.array([number[place] for place in places])[recording.block[first]]
+    line = line_numbers(recording)[recording.block[first]]
     error = np.maximum.reduceat(np.abs(recording.setpoint - recording.actual), first)
     steps = np.abs(np.diff(recording.setpoint, axis=0, prepend=recording.setpoint[:1]))
     way = np.add.reduceat(steps, first)
@@ -69,7 +68,7 @@ def block_facts(recording: Recording) -> tuple[BlockFacts, ...]:
     straight = _straight(ways)
     found = []
     order = np.argsort(line, kind="stable")
-    edges = np.flatnonzero(np.diff(line[order], prepend=-1, append=len(number)))
+    edges = np.flatnonzero(np.diff(line[order], prepend=-1, append=len(places)))
     for runs in np.split(order, edges[1:-1]):
         a, b = int(runs[0]), int(runs[-1])
         file, text_line = places[recording.block[first[a]]]
@@ -91,7 +90,30 @@ def block_facts(recording: Recording) -> tuple[BlockFacts, ...]:
                 axis=_at(recording, recording.tool_axis, int(last[b])),
             )
         )
-    return tuple(sorted(found, key=lambda facts: facts.runs[0]))
+    return tuple(found)
+
+
+def line_numbers(recording: Recording) -> Ints:
+    """(blocks,) number of each block's line, in the order in which lines first ran; -1 where it never did."""
+    places = [(block.file, block.line) for block in recording.blocks]
+    ran, first = np.unique(recording.block, return_index=True)
+    number: dict[tuple[str, int], int] = {}
+    for block in ran[np.argsort(first)].tolist():
+        number.setdefault(places[block], len(number))
+    return np.array([number.get(place, -1) for place in places], dtype=np.int64)
+
+
+def lines_at(recording: Recording, time_s: Floats) -> Ints:
+    """(m,) number of the line that ran at some times, as `block_facts` counts them; -1 where the time is NaN.
+
+    A sample ends the stretch of its block.
+    """
+    known = np.isfinite(time_s)
+    if not len(recording.time_s) or not recording.blocks:
+        return np.full(len(time_s), -1, dtype=np.int64)
+    sample = np.searchsorted(recording.time_s, np.where(known, time_s, 0.0))
+    sample = np.minimum(sample, len(recording.time_s) - 1)
+    return np.where(known, line_numbers(recording)[recording.block[sample]], -1)
 
 
 def beside_the_work(recording: Recording, vectors: Floats) -> Floats:

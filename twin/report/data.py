@@ -64,6 +64,9 @@ class Part:
     """(m, 3) indices into `vertices`, counter-clockwise seen from outside"""
     deviation_um: Floats
     """(n,) + = material outside the nominal; NaN = not on a measured face"""
+    face_time_s: Floats = field(default_factory=lambda: np.zeros(0))
+    """(m,) when each face was cut, in the recording's time; NaN = never, as the blank's own skin; (0,) where
+    nobody knows"""
 
     def __post_init__(self) -> None:
         n = len(self.vertices)
@@ -75,6 +78,10 @@ class Part:
             raise ValueError(f"part faces: indices must lie in 0 … {n - 1}")
         if self.deviation_um.shape != (n,):
             raise ValueError(f"part deviation_um: expected ({n},), got shape {self.deviation_um.shape}")
+        if self.face_time_s.shape not in ((0,), (len(self.faces),)):
+            raise ValueError(
+                f"part face_time_s: expected ({len(self.faces)},) or (0,), got shape {self.face_time_s.shape}"
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,8 @@ Deflated (zlib), then base64. Before that, one after the other, for n vertices a
    from the vertex before, zigzag (0, -1, 1, -2 … as 0, 1, 2, 3 …);
 2. triangles, 3 m values: vertices are numbered in the order in which triangles first use them; written is how
    far the index lies below the next new one (0 = the new one);
-3. colour index, n bytes.
+3. colour index, n bytes;
+4. number of the block that cut each triangle, m values, 0 = none: all low bytes, then all high bytes.
 
 Values of 1 and of 2 are unsigned 32-bit, their bytes apart: all lowest bytes, then all second bytes and so
 on.
@@ -47,8 +48,17 @@ class Payload:
         }
 
 
-def encode(vertices: Floats, faces: NDArray[np.integer], colour: NDArray[np.uint8]) -> Payload:
-    """Pack vertices (n, 3) [mm], faces (m, 3), m > 0, colour indices (n,); unused vertices are left out."""
+def encode(
+    vertices: Floats,
+    faces: NDArray[np.integer],
+    colour: NDArray[np.uint8],
+    block: NDArray[np.integer] | None = None,
+) -> Payload:
+    """Pack vertices (n, 3) [mm], faces (m, 3), m > 0, colour indices (n,); unused vertices are left out.
+
+    `block` (m,) 0 … 65535; left out, no triangle has one.
+    """
+    labels = np.zeros(len(faces), np.int64) if block is None else block
     used, renumbered = _by_first_use(faces, len(vertices))
     points = vertices[used]
     origin = points.min(axis=0)
@@ -58,7 +68,9 @@ def encode(vertices: Floats, faces: NDArray[np.integer], colour: NDArray[np.uint
     zigzag = (difference << 1) ^ (difference >> 63)
     # An index is at most one above all before it: written against that bound, most are small.
     bound = np.maximum.accumulate(np.concatenate([[-1], renumbered]))[:-1] + 1
-    raw = b"".join((_planes(zigzag), _planes(bound - renumbered), colour[used].tobytes()))
+    raw = b"".join(
+        (_bytes(zigzag, 4), _bytes(bound - renumbered, 4), colour[used].tobytes(), _bytes(labels, 2))
+    )
     return Payload(
         vertices=len(used),
         triangles=len(faces),
@@ -85,7 +97,10 @@ def thinned(part: Part, most: int) -> Part:
         solid = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
         if np.count_nonzero(solid) <= most:
             return Part(
-                vertices=part.vertices[kept], faces=faces[solid], deviation_um=part.deviation_um[kept]
+                vertices=part.vertices[kept],
+                faces=faces[solid],
+                deviation_um=part.deviation_um[kept],
+                face_time_s=part.face_time_s[solid] if len(part.face_time_s) else part.face_time_s,
             )
         cell *= 1.25
 
@@ -101,5 +116,6 @@ def _by_first_use(faces: NDArray[np.integer], n: int) -> tuple[NDArray[np.int64]
     return used, number[corners]
 
 
-def _planes(values: NDArray[np.int64]) -> bytes:
-    return values.astype("<u4").view(np.uint8).reshape(-1, 4).T.tobytes()
+def _bytes(values: NDArray[np.integer], width: int) -> bytes:
+    """Values of `width` bytes: all lowest bytes, then all second ones and so on."""
+    return values.astype(f"<u{width}").view(np.uint8).reshape(-1, width).T.tobytes()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.recording import BlockRef
-from twin.report.blocks import MOST_RUNS, beside_the_work, block_facts
+from twin.report.blocks import MOST_RUNS, beside_the_work, block_facts, line_numbers, lines_at
 
 
 def turning(sample, block, lines):
@@ -95,3 +95,22 @@ def test_who_stands_beside_the_machine_sees_the_tool_stand(sample):
     recording = turning(sample, [0] * 50, [1])
     seen = beside_the_work(recording, recording.tool_centre_mm)
     np.testing.assert_allclose(seen[:, :2], [[50.0, 0.0]] * 50, atol=1e-12)
+
+
+def test_lines_count_in_the_order_in_which_they_first_ran(sample):
+    """Block 1 is of a line that ran before, block 3 never ran."""
+    recording = turning(sample, [2] * 5 + [0] * 5 + [1] * 5 + [4] * 5, [7, 9, 9, 11, 4])
+    assert line_numbers(recording).tolist() == [1, 0, 0, -1, 2]
+    assert [facts.line for facts in block_facts(recording)] == [9, 7, 4]
+
+
+def test_a_time_belongs_to_the_line_whose_stretch_it_lies_in(sample):
+    """Samples stand at the end of what they record: block 1 runs from 0.009 to 0.019 s."""
+    recording = turning(sample, [0] * 10 + [1] * 10 + [2] * 10, [4, 7, 9])
+    facts = block_facts(recording)
+    for number, fact in enumerate(facts):
+        ((start, end),) = fact.runs
+        inside = np.array([start + 1e-6, (start + end) / 2, end - 1e-6, end])
+        assert lines_at(recording, inside).tolist() == [number] * 4
+    assert lines_at(recording, np.array([-1.0, 0.0, 99.0, np.nan])).tolist() == [0, 0, 2, -1]
+    assert lines_at(sample.recording(0), np.array([1.0, np.nan])).tolist() == [-1, -1]

@@ -39,8 +39,11 @@ def decode(payload):
         below = word(12 * n, 3 * m, k)
         corners.append(unseen - below)
         unseen += below == 0
-    colours = np.frombuffer(raw[12 * n + 12 * m :], np.uint8)
-    return positions, np.array(corners).reshape(m, 3), colours
+    colours = np.frombuffer(raw[12 * n + 12 * m : 13 * n + 12 * m], np.uint8)
+    rest = raw[13 * n + 12 * m :]
+    assert len(rest) == 2 * m
+    blocks = np.array([rest[t] + 256 * rest[m + t] for t in range(m)])
+    return positions, np.array(corners).reshape(m, 3), colours, blocks
 
 
 @st.composite
@@ -50,17 +53,18 @@ def meshes(draw):
     faces = draw(
         hnp.arrays(np.int64, st.tuples(st.integers(1, 60), st.just(3)), elements=st.integers(0, n - 1))
     )
-    return vertices, faces, draw(hnp.arrays(np.uint8, n))
+    return vertices, faces, draw(hnp.arrays(np.uint8, n)), draw(hnp.arrays(np.uint16, len(faces)))
 
 
 @given(meshes())
 @settings(max_examples=150, deadline=None)
 def test_every_corner_comes_back_within_half_a_step(mesh):
-    vertices, faces, colour = mesh
-    positions, triangles, colours = decode(encode(vertices, faces, colour))
+    vertices, faces, colour, block = mesh
+    positions, triangles, colours, blocks = decode(encode(vertices, faces, colour, block))
     step = np.ptp(vertices[np.unique(faces)], axis=0).max() / STEPS
     assert np.abs(positions[triangles] - vertices[faces]).max() <= step / 2 + 1e-9
     np.testing.assert_array_equal(colours[triangles], colour[faces])
+    np.testing.assert_array_equal(blocks, block)
     assert len(positions) == len(np.unique(faces))
 
 

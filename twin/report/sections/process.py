@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from twin.report import tables
-from twin.report.blocks import BlockFacts, block_facts
+from twin.report.blocks import BlockFacts, block_facts, lines_at
 from twin.report.charts.motion import MotionChart, motion_chart
 from twin.report.data import ReportData
 from twin.report.sections.section import Section, Tab
@@ -22,6 +22,7 @@ def process_section(report: ReportData) -> Section | None:
         return None
     motion = motion_chart(recording, report.rotary_axes, report.sync_error_arcsec) if recording else None
     facts = block_facts(recording) if recording else ()
+    areas = _areas(report, len(facts))
     number = {(fact.file, fact.line): k for k, fact in enumerate(facts)}
     programs = []
     shown: set[int] = set()
@@ -33,6 +34,7 @@ def process_section(report: ReportData) -> Section | None:
                 shown.add(block)
             lines.append((line, block))
         programs.append((PurePath(program.name).name, lines))
+    data = _data(report, motion, {k: facts[k] for k in sorted(shown)}) | {"areas": areas}
     return Section(
         name="process",
         tab=Tab.PROCESS,
@@ -41,16 +43,15 @@ def process_section(report: ReportData) -> Section | None:
             "motion": motion,
             "recorded": recording is not None,
             "programs": programs,
-            "data": Markup(json.dumps(_data(report, motion, facts, shown), separators=(",", ":"))),
+            "data": Markup(json.dumps(data, separators=(",", ":"))),
             "solid": report.solid_part is not None,
+            "patches": any(areas),
         },
         own_page=True,
     )
 
 
-def _data(
-    report: ReportData, motion: MotionChart | None, facts: tuple[BlockFacts, ...], shown: set[int]
-) -> dict[str, object]:
+def _data(report: ReportData, motion: MotionChart | None, facts: dict[int, BlockFacts]) -> dict[str, object]:
     """What the script needs of the run: axes, panels of the plots, tools, and the blocks by their numbers."""
     axes = report.recording.axes if report.recording else ()
     return {
@@ -64,8 +65,19 @@ def _data(
             }
             for tool in report.tools
         },
-        "blocks": {k: _block(fact) for k, fact in enumerate(facts) if k in shown},
+        "blocks": {k: _block(fact) for k, fact in facts.items()},
     }
+
+
+def _areas(report: ReportData, count: int) -> list[float]:
+    """(count,) area of the finished surface that each line made [mm²]; none where nobody knows."""
+    part = report.solid_part
+    if report.recording is None or part is None or not len(part.face_time_s):
+        return []
+    a, b, c = part.vertices[part.faces].transpose(1, 0, 2)
+    size = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    line = lines_at(report.recording, part.face_time_s)
+    return _rounded(np.bincount(line[line >= 0], size[line >= 0], minlength=count), 2)
 
 
 def _block(fact: BlockFacts) -> dict[str, object]:

@@ -39,7 +39,10 @@
       triangles[k] = next - below[k];
       if (below[k] === 0) next++;
     }
-    return { positions, triangles, colours: bytes.subarray(12 * n + 4 * corners, 13 * n + 4 * corners) };
+    const first = 12 * n + 4 * corners, colours = bytes.subarray(first, first + n);
+    const low = bytes.subarray(first + n), high = low.subarray(header.triangles);
+    const blocks = Uint16Array.from({ length: header.triangles }, (_, t) => low[t] | (high[t] << 8));
+    return { positions, triangles, colours, blocks };
   }
 
   /* Mean of the adjoining facets by their angle at the vertex. */
@@ -70,7 +73,7 @@
   }
 
   /* Give a corner its own vertex where its facet meets others at a sharp edge, or is not measured as they are. */
-  function splitEdges({ positions, triangles, colours }) {
+  function splitEdges({ positions, triangles, colours, blocks }) {
     const normals = vertexNormals(positions, triangles);
     const n = colours.length, corners = Uint32Array.from(triangles);
     const extra = { positions: [], normals: [], colours: [] };
@@ -108,6 +111,7 @@
       normals: join(Float32Array, normals, extra.normals),
       colours: join(Uint8Array, colours, extra.colours),
       triangles: corners,
+      blocks,
     };
   }
 
@@ -140,6 +144,7 @@
     uniform sampler2D palette;
     uniform bool coloured;
     uniform bool reading;
+    uniform vec4 paint; /* over everything, where it is not transparent */
     out vec4 colour;
 
     /* turned steel under two soft boxes: the function "steel" of twin/report/pictures.py */
@@ -157,6 +162,7 @@
       }
       bool shown = coloured && index > 0.5;
       vec3 base = texture(palette, vec2(((shown ? index : 0.0) + 0.5) / 256.0, 0.5)).rgb;
+      if (paint.a > 0.0) { shown = true; base = paint.rgb; }
       float shade = steel(normalize(turned)) * (1.0 + 0.08 * (onScreen.y - onScreen.x));
       colour = vec4(min(base * (shown ? 0.35 + 0.65 * shade : shade), 1.0), 1.0);
     }`;
@@ -194,8 +200,10 @@
   }
 
   function fill(gl, target, data) {
-    gl.bindBuffer(target, gl.createBuffer());
+    const buffer = gl.createBuffer();
+    gl.bindBuffer(target, buffer);
     gl.bufferData(target, data, gl.STATIC_DRAW);
+    return buffer;
   }
 
   function upload(gl, mesh, paletteBytes) {
@@ -211,14 +219,68 @@
       gl.enableVertexAttribArray(location);
       gl.vertexAttribPointer(location, size, type, false, 0, 0);
     });
-    fill(gl, gl.ELEMENT_ARRAY_BUFFER, mesh.triangles);
+    const whole = fill(gl, gl.ELEMENT_ARRAY_BUFFER, mesh.triangles);
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, paletteBytes);
     for (const [name, value] of [
       [gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
       [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
     ]) gl.texParameteri(gl.TEXTURE_2D, name, value);
-    return array;
+    return { array, whole };
+  }
+
+  const PATCH = [0.2, 0.68, 0.42, 1], UNPAINTED = [0, 0, 0, 0];
+
+  /* The triangles that one block cut, drawn once more over the part. */
+  function painter(gl, mesh) {
+    const buffer = gl.createBuffer();
+    let count = 0;
+    return {
+      /* number of the block in the payload; 0 = none */
+      set(number) {
+        const chosen = [];
+        if (number) mesh.blocks.forEach((block, t) => { if (block === number) chosen.push(t); });
+        const corners = new Uint32Array(3 * chosen.length);
+        chosen.forEach((t, k) => corners.set(mesh.triangles.subarray(3 * t, 3 * t + 3), 3 * k));
+        count = corners.length;
+        gl.bindVertexArray(null);
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
+        gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.DYNAMIC_DRAW);
+      },
+      /* after the part, with its vertices and program in use */
+      draw(paint) {
+        if (!count) return;
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
+        gl.uniform4fv(paint, PATCH);
+        gl.depthFunc(gl.LEQUAL);
+        gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
+        gl.depthFunc(gl.LESS);
+        gl.uniform4fv(paint, UNPAINTED);
+      },
+    };
+  }
+
+  /* Triangle under a place of the canvas [-1 … 1], nearest to the eye; -1 = none. */
+  function pick({ positions, triangles }, x, y, turn, centre, scale, shift) {
+    const n = positions.length / 3, seen = new Float32Array(3 * n);
+    for (let k = 0; k < n; k++) {
+      const p = [0, 1, 2].map((i) => positions[3 * k + i] - centre[i]);
+      seen[3 * k] = (turn[0] * p[0] + turn[3] * p[1] + turn[6] * p[2]) * scale[0] + shift[0] - x;
+      seen[3 * k + 1] = (turn[1] * p[0] + turn[4] * p[1] + turn[7] * p[2]) * scale[1] + shift[1] - y;
+      seen[3 * k + 2] = turn[2] * p[0] + turn[5] * p[1] + turn[8] * p[2];
+    }
+    let found = -1, nearest = -Infinity;
+    for (let t = 0; t < triangles.length; t += 3) {
+      const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
+      /* shares of the corners in the point, times the area */
+      const u = seen[b] * seen[c + 1] - seen[c] * seen[b + 1];
+      const v = seen[c] * seen[a + 1] - seen[a] * seen[c + 1];
+      const w = seen[a] * seen[b + 1] - seen[b] * seen[a + 1];
+      if (u < 0 || v < 0 || w < 0 || !(u + v + w > 0)) continue;
+      const depth = (u * seen[a + 2] + v * seen[b + 2] + w * seen[c + 2]) / (u + v + w);
+      if (depth > nearest) [nearest, found] = [depth, t / 3];
+    }
+    return found;
   }
 
   /* Draws what `set` was given last: strips of points [x, y, z], each with its colour. */
@@ -312,12 +374,12 @@
     const { centre, radius } = bounds(mesh.positions);
     const uniform = (name) => gl.getUniformLocation(built, name);
     const places = Object.fromEntries(
-      ["turn", "centre", "scale", "shift", "coloured", "reading"].map((name) => [name, uniform(name)]));
+      ["turn", "centre", "scale", "shift", "coloured", "reading", "paint"].map((name) => [name, uniform(name)]));
     const view = { ...VIEWS.isometric, zoom: 1, x: 0, y: 0, coloured: true, beside: false };
     let waiting = false, reach = radius, aside = [0, 0, 0];
 
-    const array = upload(gl, mesh, scale.palette);
-    const beside = lines(gl, centre);
+    const { array, whole } = upload(gl, mesh, scale.palette);
+    const beside = lines(gl, centre), patch = painter(gl, mesh);
     gl.useProgram(built);
     gl.enable(gl.DEPTH_TEST);
 
@@ -337,11 +399,17 @@
     const fitted = () => (view.beside ? Math.min(0.5 * (radius + reach), 2.6 * radius) : radius);
     const perMm = () => (0.92 * view.zoom * Math.min(canvas.width, canvas.height)) / (2 * fitted());
 
-    function render(reading) {
+    /* How the part stands before the eye: turned, scaled, moved. */
+    function stance() {
       const k = perMm(), turn = turnMatrix(view), zoom = [(2 * k) / canvas.width, (2 * k) / canvas.height];
       /* what lies between part and tool stands in the middle */
       const across = [0, 1].map((i) => turn[i] * aside[0] + turn[3 + i] * aside[1] + turn[6 + i] * aside[2]);
       const shift = [view.x, view.y].map((by, i) => (view.beside ? by - across[i] * zoom[i] : by));
+      return { turn, zoom, shift };
+    }
+
+    function render(reading) {
+      const { turn, zoom, shift } = stance();
       const deep = 0.99 / (view.beside ? Math.max(radius, reach) : radius);
       gl.useProgram(built);
       gl.bindVertexArray(array);
@@ -349,11 +417,13 @@
       gl.uniformMatrix3fv(places.turn, false, turn);
       gl.uniform3f(places.scale, ...zoom, deep);
       gl.uniform2fv(places.shift, shift);
-      gl.uniform1i(places.coloured, view.coloured ? 1 : 0);
+      gl.uniform1i(places.coloured, view.coloured && !view.beside ? 1 : 0);
       gl.uniform1i(places.reading, reading ? 1 : 0);
       gl.clearColor(0, 0, 0, 0);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, whole);
       gl.drawElements(gl.TRIANGLES, mesh.triangles.length, gl.UNSIGNED_INT, 0);
+      if (view.beside && !reading) patch.draw(places.paint);
       if (view.beside && !reading) beside.draw(turn, [...zoom, deep], shift);
       if (!reading) number(turn, centre, zoom, shift, canvas.clientWidth, canvas.clientHeight);
     }
@@ -398,14 +468,24 @@
       tip.style.transform = `translate(${x + 14}px, ${y - 10}px)`;
     }
 
-    control(canvas, view, redraw, show, () => { tip.hidden = true; });
+    /* Beside the program a click chooses the block that cut there. */
+    function choose(x, y) {
+      if (!view.beside) return;
+      const { turn, zoom, shift } = stance();
+      const place = [(2 * x) / canvas.clientWidth - 1, 1 - (2 * y) / canvas.clientHeight];
+      const number = mesh.blocks[pick(mesh, ...place, turn, centre, zoom, shift)];
+      if (number) document.dispatchEvent(new CustomEvent("hobtwin:place", { detail: { block: number - 1 } }));
+    }
+
+    control(canvas, view, redraw, { show, hide: () => { tip.hidden = true; }, choose });
     new ResizeObserver(redraw).observe(canvas);
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     redraw();
 
-    /* Strips of points beside the part; how far out they reach decides the room they get. */
-    function put(strips) {
+    /* Strips of points beside the part, whose reach decides the room they get, and the block that is painted. */
+    function put(strips, block) {
       beside.set(strips);
+      patch.set(block);
       reach = radius;
       aside = [0, 0, 0];
       const at = strips.at(-1)?.points.at(-1);
@@ -423,9 +503,11 @@
 
   /* ---------- mouse, fingers, keys ---------- */
 
-  function control(canvas, view, redraw, show, hide) {
+  const STILL = 4; /* pixels that a pointer may move while it clicks */
+
+  function control(canvas, view, redraw, { show, hide, choose }) {
     const pointers = new Map();
-    let pending = 0;
+    let pending = 0, pressed = null;
 
     const turn = (dx, dy) => {
       view.azimuth -= 0.4 * dx;
@@ -453,6 +535,7 @@
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, spot(event));
+      pressed = pointers.size === 1 && event.button === 0 ? spot(event) : null;
       hide();
     });
     canvas.addEventListener("pointermove", (event) => {
@@ -474,6 +557,11 @@
         (event.buttons & 2 || event.shiftKey ? pan : turn)(now[0] - before[0], now[1] - before[1]);
       }
       redraw();
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const at = spot(event);
+      if (pressed && Math.hypot(at[0] - pressed[0], at[1] - pressed[1]) < STILL) choose(...at);
+      pressed = null;
     });
     for (const end of ["pointerup", "pointercancel"]) {
       canvas.addEventListener(end, (event) => pointers.delete(event.pointerId));
@@ -540,7 +628,8 @@
       Object.assign(view, { azimuth: detail.direction, elevation: 25, x: 0, y: 0 });
       redraw();
     });
-    document.addEventListener("hobtwin:block", ({ detail }) => put(detail.path ? toolStrips(detail) : []));
+    document.addEventListener("hobtwin:block", ({ detail }) =>
+      put(detail.path ? toolStrips(detail) : [], detail.path ? detail.number + 1 : 0));
     const stand = () => {
       view.beside = canvas.closest(".process") !== null;
       redraw();

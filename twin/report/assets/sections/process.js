@@ -68,12 +68,21 @@
       row.append(cell("td", turns ? `${fixed(block.error[k] * 3600, 1)}″` : `${fixed(block.error[k] * 1000, 2)} µm`));
     });
     facts.append(table);
+    const area = run.areas[line.dataset.block], all = run.areas.reduce((sum, one) => sum + one, 0);
+    if (area > 0) {
+      const share = (100 * area) / all;
+      const part = share >= 99.95 ? "all" : `${share < 0.1 ? "less than 0.1" : fixed(share, 1)} %`;
+      facts.append(cell("p", `It made ${fixed(area, 1)} mm² of the finished surface, ${part} of what was cut.`));
+    } else if (all > 0) {
+      facts.append(cell("p", "Nothing of the finished surface is its work."));
+    }
   }
 
   function say() {
     const block = chosen && run.blocks[chosen.dataset.block];
     const tool = block && (run.tools[block.tool] ?? Object.values(run.tools)[0]);
-    const detail = block ? { path: block.path, axis: block.axis, radius: tool?.radius, half: tool?.half } : {};
+    const number = Number(chosen?.dataset.block);
+    const detail = block ? { number, path: block.path, axis: block.axis, radius: tool?.radius, half: tool?.half } : {};
     document.dispatchEvent(new CustomEvent("hobtwin:block", { detail }));
   }
 
@@ -117,6 +126,8 @@
     choose(lines.find((line) => run.blocks[line.dataset.block]?.runs.some(([from, to]) => from <= time && time <= to)));
   });
   document.addEventListener("hobtwin:part", say);
+  document.addEventListener("hobtwin:place", ({ detail }) =>
+    choose(box.querySelector(`[data-block="${detail.block}"]`)));
   /* the longest block that moved is shown first */
   const longest = Object.entries(run.blocks).reduce(
     (best, [k, block]) => (best && run.blocks[best].duration >= block.duration ? best : k), null);
