@@ -83,8 +83,15 @@ class Legend:
             limit=f"{scale.limit_um:g}",
             ticks=scale.ticks(),
             gradient=gradient(palette()),
-            beyond=number(100 * scale.beyond, 1) if scale.beyond else "",
+            beyond=_share(scale.beyond),
         )
+
+
+def _share(share: float) -> str:
+    """Share as percentage; never zero of something."""
+    if not share:
+        return ""
+    return number(100 * share, 1) if share >= 5e-4 else "less than 0.1"
 
 
 def gradient(colours: NDArray[np.uint8]) -> str:

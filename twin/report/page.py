@@ -19,6 +19,7 @@ PRINT = "print.css"
 SCRIPT = "tabs.js"
 """comes last: the others hear which page it shows first"""
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe\uffff]")
+_SYMBOL = re.compile(r"\b([fF])_(H[αβ]|f[αβ]|[αβpr])\b(?!\.\w)")
 _SUBSCRIPT = re.compile(r"_\{([^}]*)\}")
 
 
@@ -66,6 +67,11 @@ def _joined(names: tuple[str, ...]) -> Markup:
     return Markup("\n".join((ASSETS / name).read_text(encoding="utf-8") for name in names))
 
 
+def _symbols(text: str) -> Markup:
+    """Text for HTML, the symbols of deviations in it with what follows `_` as subscript: f_Hα, F_p."""
+    return Markup(_SYMBOL.sub(r"\1<sub>\2</sub>", str(escape(text))))
+
+
 def _css_string(text: str) -> str:
     """A CSS string that ends nothing but itself: every character but letters and digits escaped."""
     return '"' + "".join(c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text) + '"'
@@ -85,3 +91,4 @@ _ENVIRONMENT = Environment(
 )
 _ENVIRONMENT.globals["number"] = number
 _ENVIRONMENT.filters["lowered"] = lowered
+_ENVIRONMENT.filters["symbols"] = _symbols

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from twin.report.colours import COVERED, ZERO, Scale, palette, scale_for
+from twin.report.colours import COVERED, ZERO, Legend, Scale, palette, scale_for
 
 values = hnp.arrays(np.float64, st.integers(1, 200), elements=st.floats(-1e5, 1e5))
 
@@ -54,3 +54,12 @@ def test_both_ways_the_colours_grow_darker_and_part_in_hue():
     yellow_blue = colours[:, :2].mean(axis=1) - colours[:, 2]
     assert yellow_blue[40] < -30
     assert yellow_blue[214] > 30
+
+
+@pytest.mark.parametrize(
+    ("far", "said"), [(0, ""), (1, "less than 0.1"), (5, "0.1"), (50, "0.5"), (100, "1.0")]
+)
+def test_what_lies_beyond_the_scale_is_never_said_to_be_nothing(far, said):
+    deviation = np.ones(10_000)
+    deviation[:far] = 100.0
+    assert Legend.of(deviation).beyond == said

@@ -261,3 +261,11 @@ def test_half_a_million_triangles_stay_a_small_file(sample, tmp_path):
     path = tmp_path / "report.html"
     write_report(path, sample.report(part=part, recording=recording))
     assert path.stat().st_size < 8e6
+
+
+def test_symbols_in_findings_are_set_and_file_names_are_not(sample):
+    findings = ("total profile deviation F_α of 30 µm", "slope f_Hβ, F_p: see f_p.nc and F_rank <b>")
+    report = sample.report(inspection=replace(sample.gear_inspection(), findings=findings))
+    html = render(report)
+    assert "deviation F<sub>α</sub> of 30 µm." in html
+    assert "Slope f<sub>Hβ</sub>, F<sub>p</sub>: see f_p.nc and F_rank &lt;b&gt;." in html

@@ -396,7 +396,7 @@
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
 
     /* with the tool beside the part there is room for both, but the part stays to be seen */
-    const fitted = () => (view.beside ? Math.min(0.5 * (radius + reach), 2.6 * radius) : radius);
+    const fitted = () => (view.beside ? Math.min(0.5 * (radius + reach), 1.7 * radius) : radius);
     const perMm = () => (0.92 * view.zoom * Math.min(canvas.width, canvas.height)) / (2 * fitted());
 
     /* How the part stands before the eye: turned, scaled, moved. */
