@@ -71,6 +71,11 @@ def rewritten(
     return Rewritten(text=text, corrections=tuple(writer.strokes))
 
 
+def across(machine: MachineData) -> bool:
+    """Whether the machine can move its tool across the work: a linear Y."""
+    return any(axis.letter == "Y" and not axis.rotary for axis in machine.axes)
+
+
 @dataclass(slots=True, kw_only=True)
 class _Writer:
     program: Program
@@ -122,9 +127,11 @@ class _Writer:
 
     def _write_move(self, feed: Feed | None, place: list[float], named: set[str]) -> None:
         letters, c = self.machine.letters, place[self.work]
-        change = corrected(self.circle, c, radius=self.radius, has_y="Y" in letters)
-        added = {"X": change.x, "Y": change.y}
-        if change.c:
+        change = corrected(self.circle, c, radius=self.radius, has_y=across(self.machine))
+        added = {"X": change.x}
+        if across(self.machine):
+            added["Y"] = change.y
+        else:
             added[letters[self.work]] = change.c
         words = []
         for k, axis in enumerate(self.machine.axes):

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.language.source import load_program
+from controller.tables.machine_data import machine_data
 from twin.advice.dry import advised_run
 from twin.compensation.measure import Measurement, measure
 from twin.compensation.removal import Removal, removal
-from twin.compensation.rewrite import Rewritten, rewritten
+from twin.compensation.rewrite import Rewritten, across, rewritten
 from twin.errors import HobtwinError, InputError, Place
 from twin.inspection.involute import Involute, geometry
 from twin.inspection.nominal import GearNominal
@@ -74,7 +75,7 @@ def walk(job: Job, folder: Path, options: Options, reporter: Reporter) -> Compen
     circle = found.centre.geometric
     require_inside(circle, gear.root_diameter / 2.0)
     settings = settings_of(job, cutters_of(job), events=options.events)
-    has_y = "Y" in settings.parameters.letters
+    has_y = across(machine_data(settings.parameters))
     radius = gear.measuring_diameter / 2.0
     title = f"COMPENSATED FOR E {circle.eccentricity:.4f} MM AT {_degrees(circle.phase):.2f} DEG"
     cutters = cutters_of(job)

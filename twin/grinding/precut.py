@@ -78,7 +78,7 @@ class PrecutGear:
         side = half[keep] @ [1.0, 1j]
         # a flank that is radial inside its base circle goes on by so little
         outwards = np.maximum.accumulate(np.angle(side)) + STEP * np.arange(len(side))
-        side = np.abs(side) * np.exp(1j * outwards)
+        side = np.hypot(side.real, side.imag) * (np.cos(outwards) + 1j * np.sin(outwards))
         one = np.concatenate([side.conj()[::-1], side])
         middles = math.radians(self.gap_phase_deg) + 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
         around = (np.exp(1j * middles)[:, None] * one).ravel()

@@ -83,7 +83,7 @@ def gear_job(tmp_path):
         folder.mkdir()
         (folder / "O9810.nc").write_text(MACRO.read_text())
         home = ("G28 V0\n" if tilted else "") + "G28 U0 W0\nG28 H0"
-        parameters = '"8200#0" = 1, "9001" = 5' if tilted else '"9001" = 4'
+        parameters = '"8200#0" = 1, "9001" = 5' if tilted else '"9001" = 3'
         (folder / "job.toml").write_text(
             JOB.format(
                 helix=helix,
