@@ -7,8 +7,8 @@
 - `language/`: `source` and `folder` → `lexer` → `syntax` → `interpreter` (`flow`, `blocks`, a module of
   `families/` for every family of codes, `macro/`, `cycles/`) → commands; `plain_lane` is the short way of
   plain blocks.
-- `laws/`, pure functions: `gearbox`, `inclined`, `segments`, `wave`, `arcs`, `stroke_area`.
-- `motion/`: `axes` ← `paths` ← `settling` ← `travel` ← `turning` ← `manual` ← `returning` ← `motion`;
-  `timeline` holds what is planned, `sampling` reads it tick by tick.
+- `laws/`, pure functions: `gearbox`, `angle_table`, `inclined`, `segments`, `wave`, `arcs`, `stroke_area`.
+- `motion/`: `axes` ← `paths` ← `settling` ← `travel` ← `turning` ← `manual` ← `returning` ← `correcting`
+  ← `motion`; `timeline` holds what is planned, `sampling` reads it tick by tick.
 - `operator/`: `actions` in words, the `panel`, the `agenda` of what is still to come.
 """

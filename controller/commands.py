@@ -174,6 +174,33 @@ class SelectTool:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ClearTable:
+    """G10 L60 Q: a new table of corrections against the work angle, all nought."""
+
+    points: int
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetTablePoint:
+    """G10 L60 P: the corrections at one of its points."""
+
+    number: int
+    """from 1"""
+    values: Mapping[int, float]
+    """column -> correction [mm slide travel | deg]"""
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwitchTable:
+    """G10 L61, L62: the table comes into force, or goes out of it."""
+
+    on: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Coolant:
     """M08, M09."""
 
@@ -211,6 +238,9 @@ Command = (
     | SetCoordinates
     | ShiftCoordinates
     | SelectTool
+    | ClearTable
+    | SetTablePoint
+    | SwitchTable
     | Coolant
     | ProgramStop
     | ProgramEnd

@@ -12,6 +12,7 @@ from functools import singledispatch
 
 from controller.commands import (
     Arc,
+    ClearTable,
     Command,
     Coolant,
     Couple,
@@ -25,11 +26,13 @@ from controller.commands import (
     ReferenceReturn,
     SelectTool,
     SetCoordinates,
+    SetTablePoint,
     ShiftCoordinates,
     Skip,
     SpindleSpeed,
     StrokeCheck,
     SurfaceSpeed,
+    SwitchTable,
     Thread,
     Uncouple,
 )
@@ -133,6 +136,21 @@ def _(command: Couple, machine: MachineData) -> tuple[str, list[str]]:
     if command.phase:
         values.append(f"R{number(command.phase)}")
     return "COUPLE", values
+
+
+@_said.register
+def _(command: ClearTable, _machine: MachineData) -> tuple[str, list[str]]:
+    return "TABLE", [f"Q{command.points}"]
+
+
+@_said.register
+def _(command: SetTablePoint, machine: MachineData) -> tuple[str, list[str]]:
+    return "TABLE_POINT", [f"P{command.number}", *_positions(command.values, machine)]
+
+
+@_said.register
+def _(command: SwitchTable, _machine: MachineData) -> tuple[str, list[str]]:
+    return "TABLE", ["ON" if command.on else "OFF"]
 
 
 @_said.register

@@ -7,6 +7,7 @@ from typing import Any
 
 from controller.commands import (
     Arc,
+    ClearTable,
     Command,
     Coolant,
     Couple,
@@ -20,27 +21,29 @@ from controller.commands import (
     ReferenceReturn,
     SelectTool,
     SetCoordinates,
+    SetTablePoint,
     ShiftCoordinates,
     Skip,
     SpindleSpeed,
     StrokeCheck,
     SurfaceSpeed,
+    SwitchTable,
     Thread,
     Uncouple,
 )
 from controller.laws.arcs import arc_displacements
+from controller.motion.correcting import Correcting
 from controller.motion.path import NOTHING, Travel
 from controller.motion.registers import TURN, modulo, shortest
 from controller.motion.requests import Steps
 from controller.motion.rest_to_rest import ShortLane
-from controller.motion.returning import Returning
 from controller.motion.travel import Manner
 from controller.operator.actions import HIGHEST_OVERRIDE
 from controller.span import Span
 from controller.tables.alarms import Alarm, AlarmClass, alarm
 
 
-class Motion(Returning):
+class Motion(Correcting):
     """Plans the motion of the whole machine, command by command."""
 
     skip_positions: tuple[float, ...] | None = None
@@ -241,13 +244,16 @@ _LAWS: dict[type, Callable[..., Steps[Any] | None]] = {
     ReferenceCheck: Motion._check_reference,
     StrokeCheck: Motion._stroke_check,
     Dwell: lambda motion, command: motion._dwell(command.seconds),
-    Couple: Motion._couple,
+    Couple: Motion._couple_within,
     Uncouple: lambda motion, _: motion._uncouple(),
     SpindleSpeed: Motion._spindle,
     SurfaceSpeed: Motion._surface_speed,
     SetCoordinates: Motion._set_coordinates,
     ShiftCoordinates: Motion._shift_coordinates,
     SelectTool: Motion._select_tool,
+    ClearTable: Motion._clear_table,
+    SetTablePoint: Motion._set_table_point,
+    SwitchTable: Motion._switch_table,
     Coolant: _nothing,
     ProgramStop: Motion._stop,
     ProgramEnd: Motion._end,

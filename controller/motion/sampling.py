@@ -28,6 +28,11 @@ def setpoints(timeline: Timeline, time: Floats) -> Floats:
             if not epoch.gear.follow:
                 added += slave_travel(epoch.gear, part[:, epoch.gear.master] - epoch.master_start)
             part[:, epoch.gear.slave] += added
+    for correction in timeline.corrections:
+        table, weight = correction.table, correction.weight(time)
+        angle = out[:, table.work].copy()
+        for column in table.values:
+            out[:, column] += weight * table.at(column, angle)
     return out
 
 

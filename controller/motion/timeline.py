@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from controller.laws.angle_table import RAMP_S, TableInForce
 from controller.laws.gearbox import GearBox, slave_travel
 from controller.laws.segments import Track
 
@@ -57,6 +58,8 @@ class Timeline:
     tracks: list[Track] = field(init=False)
     epochs: list[Epoch] = field(default_factory=list)
     tools: Marks = field(default_factory=Marks)
+    corrections: list[TableInForce] = field(default_factory=list)
+    """tables against the work angle, added where the timeline is sampled: no display counts them"""
 
     def __post_init__(self) -> None:
         self.tracks = [Track() for _ in range(self.axes)]
@@ -95,7 +98,8 @@ class Timeline:
 
     def still_until(self, time: float) -> float:
         """Until when no axis moves from `time` on; inf where nothing planned moves again."""
-        return min(track.still_until(time) for track in self.tracks)
+        tables = (correction.still_until(time) for correction in self.corrections)
+        return min(*(track.still_until(time) for track in self.tracks), *tables)
 
     def forget(self, before: float) -> None:
         """Free what no time from `before` on needs."""
@@ -107,3 +111,4 @@ class Timeline:
             del self.tools.values[:k]
         if self.epochs and self.epochs[0].end <= before:
             self.epochs = [epoch for epoch in self.epochs if epoch.end > before]
+        self.corrections = [one for one in self.corrections if one.end + RAMP_S > before]

@@ -6,11 +6,20 @@ laid about O1 instead of O. Without, the place on X that a gap's pitch point com
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 
 from twin.probing.circle import Circle
 
 SAG_MM = 0.05e-3
 """how far the path may stand off the arc of O1 between two blocks"""
+
+
+class Way(Enum):
+    """How a program is compensated."""
+
+    ACROSS = "X and Y, gap by gap"
+    TURNED = "C and X, gap by gap: no linear Y"
+    TABLE = "C and X against the work angle, while hobbing"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

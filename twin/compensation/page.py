@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 import twin.report.page as report_page
 from twin.compensation.charts import removal_chart, touch_chart
+from twin.compensation.correction import Way
 from twin.compensation.text import (
     figures,
     figures_of_uncertainty,
@@ -41,6 +42,7 @@ def render(found: Compensation) -> str:
             )
         ),
         sentence=_sentence(found),
+        way=found.way.value,
         good=found.after.outcome.exit_code == 0,
         fits=[
             (
@@ -64,7 +66,7 @@ def render(found: Compensation) -> str:
         else removal_chart(before, after, stock.stock_per_flank_mm * 1e3),
         stock_um=None if stock is None else number(stock.stock_per_flank_mm * 1e3, 0),
         slope=None
-        if found.has_y
+        if found.way is not Way.TURNED
         else {
             "mrad": number(float(abs(law.beta).max()) * 1e3, 3),
             "um": number(remaining_slope_um(found), 2),

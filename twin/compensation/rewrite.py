@@ -20,7 +20,7 @@ from controller.dry_run import dry_run
 from controller.language.source import Program
 from controller.observed import Observed
 from controller.tables.machine_data import INCREMENT_LETTER, MachineData, machine_data
-from twin.compensation.correction import Correction, corrected, widest_step
+from twin.compensation.correction import corrected, widest_step
 from twin.errors import InputError, Place
 from twin.presets import ControllerSettings
 from twin.probing.circle import Circle
@@ -31,15 +31,6 @@ _WORDS = re.compile(r"(?<![A-Z#])(T\d{3,4}|G5[4-9])(?!\d|\.)")
 """words of a source block that are taken over as they stand"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Rewritten:
-    """A compensated program."""
-
-    text: str
-    corrections: tuple[tuple[float, Correction], ...]
-    """C of the program [deg] and what was added there, for every stroke at feed"""
-
-
 def rewritten(
     program: Program,
     settings: ControllerSettings,
@@ -48,7 +39,7 @@ def rewritten(
     work: int,
     radius: float,
     title: str,
-) -> Rewritten:
+) -> str:
     """Write a program anew for a gear whose axis stands at `circle`'s centre.
 
     `work`: column of the work spindle; `radius` [mm]: where gaps are put right on a machine without a Y axis.
@@ -67,8 +58,7 @@ def rewritten(
     if found.alarms:
         raise InputError(f"the program to be compensated ends in an alarm: {found.alarms[0]}")
     blocks = [f"N{10 * k:04d} {block} ;" for k, block in enumerate(writer.blocks, start=1)]
-    text = "\n".join(["%", f"O0001 ({title})", *blocks, "%", ""])
-    return Rewritten(text=text, corrections=tuple(writer.strokes))
+    return "\n".join(["%", f"O0001 ({title})", *blocks, "%", ""])
 
 
 def across(machine: MachineData) -> bool:
@@ -84,7 +74,6 @@ class _Writer:
     work: int
     radius: float
     blocks: list[str] = field(default_factory=lambda: ["G54 G98"])
-    strokes: list[tuple[float, Correction]] = field(default_factory=list)
     _said: dict[str, str] = field(default_factory=dict)
     """axis letter -> the number last written for it"""
     _per_revolution: bool = False
@@ -152,7 +141,6 @@ class _Writer:
             self._per_revolution = feed.per_revolution
             self.blocks.append("G99" if feed.per_revolution else "G98")
         value = feed.value if feed.per_revolution else 60.0 * feed.value
-        self.strokes.append((c % 360.0, change))
         self.blocks.append(" ".join(["G01", *words, f"F{_number(value)}"]))
 
     def _return(self, seen: Observed, command: ReferenceReturn) -> None:

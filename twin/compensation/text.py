@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from twin.compensation.correction import Way
 from twin.compensation.walk import Compensation, Stage
 from twin.probing.circle import Circle
 
@@ -24,13 +25,14 @@ def lines(found: Compensation) -> list[str]:
         f"  uncertainty of the centre, 95 %: {centre.uncertainty_mm * 1e3:.2f} µm; as F_p "
         f"{figures_of_uncertainty(found)['cumulative_pitch_um']:.2f} µm",
     ]
+    said.append(f"compensated by {found.way.value}")
     law = found.corrections
     for k in range(min(SHOWN, len(found.gaps_deg))):
         said.append(
             f"  gap {k + 1:>2} at {found.gaps_deg[k]:8.3f}°: C {math.degrees(law.c[k]):+9.4f}°, "
             f"X {law.x[k] * 1e3:+7.2f} µm, Y {law.y[k] * 1e3:+7.2f} µm"
         )
-    if not found.has_y:
+    if found.way is Way.TURNED:
         said.append(
             f"  no Y axis: the gaps stay off by up to {np.abs(law.beta).max() * 1e3:.3f} mrad, "
             f"{remaining_slope_um(found):.2f} µm over a flank's height, opposite on both flanks"
@@ -66,7 +68,7 @@ def remaining_slope_um(found: Compensation) -> float:
 def table(found: Compensation) -> list[tuple[str, float | None, float | None]]:
     """What is compared: name, before, after [µm]."""
     a, b = figures(found.before), figures(found.after)
-    return [(NAMES[key], a[key], b[key]) for key in NAMES]
+    return [(NAMES[key], a[key], b[key]) for key in NAMES if a[key] is not None or b[key] is not None]
 
 
 NAMES = {
@@ -105,6 +107,7 @@ def as_json(found: Compensation) -> dict[str, object]:
     measured, centre, law = found.measurement, found.measurement.centre, found.corrections
     return {
         "job": found.job.name,
+        "way": found.way.value,
         "touches": {"radius_mm": measured.radius_mm.tolist(), "c_deg": measured.angle_deg.tolist()},
         "fits": {
             name: {
@@ -125,7 +128,7 @@ def as_json(found: Compensation) -> dict[str, object]:
                 "c_deg": math.degrees(c),
                 "x_mm": x,
                 "y_mm": y,
-                "slope_mrad": 0.0 if found.has_y else beta * 1e3,
+                "slope_mrad": beta * 1e3 if found.way is Way.TURNED else 0.0,
             }
             for psi, c, x, y, beta in zip(
                 found.gaps_deg,

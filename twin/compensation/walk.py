@@ -11,17 +11,20 @@ from numpy.typing import NDArray
 from controller.language.source import load_program
 from controller.tables.machine_data import machine_data
 from twin.advice.dry import advised_run
+from twin.compensation.correction import Way
+from twin.compensation.hobbing import first_gear_box, with_table
 from twin.compensation.measure import Measurement, measure
 from twin.compensation.removal import Removal, removal
-from twin.compensation.rewrite import Rewritten, across, rewritten
+from twin.compensation.rewrite import across, rewritten
 from twin.errors import HobtwinError, InputError, Place
 from twin.inspection.involute import Involute, geometry
 from twin.inspection.nominal import GearNominal
 from twin.job.locate import line_of
 from twin.job.schema import Job
 from twin.outcome import Options, Outcome
-from twin.presets import cutters_of, settings_of
+from twin.presets import ControllerSettings, cutters_of, settings_of
 from twin.probing.band import steps_of
+from twin.probing.circle import Circle
 from twin.probing.law import GapCorrection, plain_correction, require_inside, turned_correction
 from twin.progress import Reporter
 from twin.run import run_job
@@ -48,12 +51,11 @@ class Compensation:
     job: Job
     gear: Involute
     measurement: Measurement
-    has_y: bool
+    way: Way
     gaps_deg: tuple[float, ...]
     """direction of every gap from the part's +X"""
     corrections: GapCorrection
     """of every gap: C, X, Y, and the slope that stays without a Y axis (beta)"""
-    rewritten: Rewritten
     before: Stage
     after: Stage
 
@@ -75,28 +77,13 @@ def walk(job: Job, folder: Path, options: Options, reporter: Reporter) -> Compen
     circle = found.centre.geometric
     require_inside(circle, gear.root_diameter / 2.0)
     settings = settings_of(job, cutters_of(job), events=options.events)
-    has_y = across(machine_data(settings.parameters))
-    radius = gear.measuring_diameter / 2.0
     title = f"COMPENSATED FOR E {circle.eccentricity:.4f} MM AT {_degrees(circle.phase):.2f} DEG"
-    cutters = cutters_of(job)
-    program = rewritten(
-        load_program(job.program),
-        settings,
-        circle,
-        work=make_ready(job, cutters).work_column,
-        radius=radius,
-        title=title,
-    )
-    compensated = write_job(job, program.text, folder / "compensated")
-    dry, _ = advised_run(compensated, cutters, settings, load_program(compensated.program))
+    way, text = _compensated(job, settings, circle, gear, title)
+    compensated = write_job(job, text, folder / "compensated")
+    dry, _ = advised_run(compensated, cutters_of(job), settings, load_program(compensated.program))
     if dry.alarms:
         raise HobtwinError(f"the compensated program ends in an alarm: {dry.alarms[0]}")
     gaps = _gaps(job, gear)
-    law = (
-        plain_correction(circle, np.radians(gaps))
-        if has_y
-        else turned_correction(circle, np.radians(gaps), radius)
-    )
     stages = []
     for name, one in (("before", job), ("after", compensated)):
         reporter.stage(f"{name} compensation")
@@ -107,13 +94,44 @@ def walk(job: Job, folder: Path, options: Options, reporter: Reporter) -> Compen
         job=job,
         gear=gear,
         measurement=found,
-        has_y=has_y,
+        way=way,
         gaps_deg=tuple(gaps.tolist()),
-        corrections=law,
-        rewritten=program,
+        corrections=_law(way, circle, gear, np.radians(gaps)),
         before=before,
         after=after,
     )
+
+
+def _compensated(
+    job: Job, settings: ControllerSettings, circle: Circle, gear: Involute, title: str
+) -> tuple[Way, str]:
+    """How the job's program is compensated, and the program."""
+    program = load_program(job.program)
+    engaged = first_gear_box(program, settings)
+    if engaged is not None:
+        radius = gear.reference_diameter / 2.0
+        return Way.TABLE, with_table(program, engaged, circle, radius=radius, title=title)
+    way = Way.ACROSS if across(machine_data(settings.parameters)) else Way.TURNED
+    written = rewritten(
+        program,
+        settings,
+        circle,
+        work=make_ready(job, cutters_of(job)).work_column,
+        radius=gear.measuring_diameter / 2.0,
+        title=title,
+    )
+    return way, written
+
+
+def _law(way: Way, circle: Circle, gear: Involute, gaps: Floats) -> GapCorrection:
+    """What every gap, at its direction (z,) [rad], is corrected by."""
+    plain = plain_correction(circle, gaps)
+    if way is Way.ACROSS:
+        return plain
+    if way is Way.TURNED:
+        return turned_correction(circle, gaps, gear.measuring_diameter / 2.0)
+    radius = gear.reference_diameter / 2.0
+    return replace(plain, c=plain.c - plain.y / radius, y=np.zeros_like(plain.y))
 
 
 def write_job(job: Job, program: str, folder: Path) -> Job:

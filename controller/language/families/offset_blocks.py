@@ -6,6 +6,7 @@ from dataclasses import replace
 from controller.commands import Command, Move, SelectTool, SetCoordinates, ShiftCoordinates
 from controller.language.draft import Draft
 from controller.language.families.feed_blocks import feed_in_force
+from controller.language.families.table_blocks import OFF, ON, TABLE, set_table
 from controller.language.lexer import Word
 from controller.language.offsets import LAST_TOOL_OFFSET
 from controller.motion.registers import modulo
@@ -71,13 +72,17 @@ def interpret_work_offset(draft: Draft, before: int) -> None:
 
 
 def set_offsets(draft: Draft) -> None:
-    """G10: P with tool offsets, L2 P with work offsets. A tool offset counts from the next T on."""
+    """G10: P with tool offsets, L2 P with work offsets, L60 to L62 a table against the work angle. A tool
+    offset counts from the next T on."""
     word, kind = draft.take("P"), draft.take("L")
+    if kind is not None and draft.reader.natural(kind) in (TABLE, ON, OFF):
+        set_table(draft, draft.reader.natural(kind), word)
+        return
     if word is None:
         valid = "P, the number of the offset"
         raise draft.alarm("PS0030", "G10 without P", draft.code_word(G10), valid=valid)
     if kind is not None and draft.reader.natural(kind) != _WORK_OFFSET_LIST:
-        valid = "L2 for work offsets, no L for tool offsets"
+        valid = "L2 for work offsets, no L for tool offsets, L60 to L62 for the table of the work angle"
         raise draft.alarm("HT9003", f"G10 {kind}", kind, valid=valid)
     number = draft.reader.natural(word)
     if kind is not None:

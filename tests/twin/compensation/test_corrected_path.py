@@ -72,7 +72,7 @@ def test_the_tool_passes_the_gear_as_it_would_a_true_one(gear_job, helix, phase)
         work=work,
         radius=16.0,
         title="T",
-    ).text
+    )
     true, _ = session(job, original, {"work_eccentricity_mm": 0.0})
     found, _ = session(job, parse_program(text), {})
     assert found.alarms == ()
@@ -132,7 +132,7 @@ def test_tools_zero_points_and_dwells_are_taken_over(gear_job):
     text = "G28 V0\nG28 U0 W0\nG28 H0\nT0101\nG55\nG00 X60. Z20.\nG04 X1.5\nM08\nS300 M04\nM09\nM05\nM30"
     found = rewritten(
         parse_program(text), settings_of(job, cutters), circle(0.0, 0.0), work=3, radius=16.0, title="T"
-    ).text
+    )
     said = [line.split(" ", 1)[1].rstrip(" ;") for line in found.splitlines() if line.startswith("N")]
     assert said[3:] == [
         "G28 H0",
