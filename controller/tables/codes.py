@@ -79,7 +79,7 @@ _ROWS = (
     (940, "01", "RUNS", "facing cycle", _RULINGS),
     (40, "00", "RUNS", "dwell", _RULINGS),
     (71, "00", "NEVER", "cylindrical interpolation", _LANGUAGE),
-    (100, "00", "RUNS", "offset data setting", _RULINGS),
+    (100, "00", "RUNS", "offset data setting; L60 to L62: table against the work angle", _RULINGS),
     (110, "00", "RUNS", "offset data setting off", _LANGUAGE),
     (270, "00", "RUNS", "reference return check", _RULINGS),
     (280, "00", "RUNS", "return to the reference point", _RULINGS),

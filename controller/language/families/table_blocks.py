@@ -38,7 +38,7 @@ def set_table(draft: Draft, kind: int, number: Word | None) -> None:
     if count is not None:
         raise draft.alarm("PS0009", f"{count} with P", count, valid="Q without P for a new table")
     if not absolute:
-        raise draft.alarm("HT9012", "G10 L60 P without a value", number, valid="X, Z, Y or C")
+        raise draft.alarm("HT9012", f"G10 L60 {number} without a value", number, valid="X, Z, Y or C")
     draft.commands.append(
         SetTablePoint(
             number=draft.reader.natural(number),
