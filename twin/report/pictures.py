@@ -90,18 +90,28 @@ class _Mesh:
         """(3, n)"""
         self.faces = np.ascontiguousarray(faces.T, np.int32)
         """(3, m)"""
-        corner = self.points[:, self.faces]
+
+    def normals(self, chosen: Ints) -> Single:
+        """(3, 3 corners, k) unit normals at the corners of the `chosen` faces (k,).
+
+        Blended from the facets around a vertex; the facet's own where that lies off it by a sharp edge.
+        """
+        near = np.zeros(self.points.shape[1], bool)
+        near[self.faces[:, chosen]] = True
+        around = np.flatnonzero(near[self.faces[0]] | near[self.faces[1]] | near[self.faces[2]])
+        faces = self.faces[:, around]
+        corner = self.points.take(faces, axis=1)
         edge = [_unit(corner[:, (k + 1) % 3] - corner[:, k]) for k in range(3)]
-        self.facet_normals = _unit(_cross(edge[0], edge[1]))
-        """(3, m)"""
+        facet = _unit(_cross(edge[0], edge[1]))
         total = np.zeros_like(self.points)
         for k in range(3):
             # Weighted by the angle at the vertex: the mean does not depend on the triangulation.
             angle = np.arccos(np.clip(-_dot(edge[k], edge[k - 1]), -1, 1))
             for axis in range(3):
-                total[axis] += np.bincount(self.faces[k], self.facet_normals[axis] * angle, total.shape[1])
-        self.vertex_normals = _unit(total)
-        """(3, n)"""
+                total[axis] += np.bincount(faces[k], facet[axis] * angle, total.shape[1])
+        own = facet[:, None, np.searchsorted(around, chosen)]
+        blended = _unit(total.take(self.faces[:, chosen], axis=1))
+        return np.where(_dot(own, blended) < CREASE_COSINE, own, blended)
 
 
 def _draw(mesh: _Mesh, width: int, height: int, view: View, tint: Tint | None) -> NDArray[np.uint8]:
@@ -110,15 +120,15 @@ def _draw(mesh: _Mesh, width: int, height: int, view: View, tint: Tint | None) -
     screen = turn @ mesh.points
     scale, shift = _fit(screen, width, height)
     screen = _to_screen(screen, scale, shift)
-    facing = np.flatnonzero(area(*screen[:2, mesh.faces].swapaxes(0, 1)) < -1e-6)
-    faces = mesh.faces[:, facing]
-    corner = screen[:, faces]
-    pixel, seen, depth = visible(corner, width, height)
-    own, blended = mesh.facet_normals[:, None, facing], mesh.vertex_normals[:, faces]
-    normal = np.where(_dot(own, blended) < CREASE_COSINE, own, blended)
-    brightness = steel(np.tensordot(turn, normal, 1))
-    column, row = pixel % width, pixel // width
-    shade = on_plane(corner, brightness, seen, column, row)
+    facing = _facing(screen, mesh.faces)
+    pixel, seen, depth = visible(screen.take(mesh.faces[:, facing], axis=1), width, height)
+    # of all triangles, those that are seen have a brightness
+    drawn, seen = _numbered(seen, len(facing))
+    chosen = facing[drawn]
+    faces = mesh.faces[:, chosen]
+    corner = screen.take(faces, axis=1)
+    brightness = steel(np.tensordot(turn, mesh.normals(chosen), 1))
+    shade = on_plane(corner, brightness, seen, pixel % width, pixel // width)
     shade *= _falloff(pixel, width, height) * _crevices(depth * scale, pixel, (height, width))
     # brightness of steel and coverage, and with a tint red, green and blue of what is coloured
     image = np.zeros((2 if tint is None else 5, height * width), np.float32)
@@ -126,8 +136,10 @@ def _draw(mesh: _Mesh, width: int, height: int, view: View, tint: Tint | None) -
     if tint is not None:
         _colour(image, tint, faces, corner, pixel=pixel, seen=seen, shade=shade, width=width)
     image = image.reshape(-1, height, width)
-    parts = [image[:, i::SAMPLES, j::SAMPLES] for i in range(SAMPLES) for j in range(SAMPLES)]
-    mean = np.sum(parts, axis=0) / SAMPLES**2
+    mean = image[:, ::SAMPLES, ::SAMPLES].copy()
+    for i, j in list(np.ndindex(SAMPLES, SAMPLES))[1:]:
+        mean += image[:, i::SAMPLES, j::SAMPLES]
+    mean /= SAMPLES**2
     rgba = np.zeros((*mean.shape[1:], 4), np.float32)
     own_colour = mean[0, ..., None] * np.array(STEEL, np.float32)
     if tint is not None:
@@ -135,6 +147,20 @@ def _draw(mesh: _Mesh, width: int, height: int, view: View, tint: Tint | None) -
     rgba[..., :3] = own_colour / np.maximum(mean[1, ..., None], 1e-6)
     rgba[..., 3] = mean[1]
     return (np.clip(rgba, 0, 1) * 255 + 0.5).astype(np.uint8)
+
+
+def _facing(screen: Single, faces: Ints) -> Ints:
+    """Triangles (k,) that face the eye and reach over the middles of a row and a column of pixels."""
+    x, y = (axis.take(faces) for axis in screen[:2])
+    over = [np.rint(axis).max(axis=0) > np.rint(axis).min(axis=0) for axis in (x, y)]
+    return np.flatnonzero(over[0] & over[1] & (area(*np.stack([x, y], axis=1)) < -1e-6))
+
+
+def _numbered(seen: Ints, count: int) -> tuple[Ints, Ints]:
+    """Which of `count` triangles are `seen` (p,), and their places among those."""
+    some = np.zeros(count, bool)
+    some[seen] = True
+    return np.flatnonzero(some), (np.cumsum(some, dtype=np.int32) - 1)[seen]
 
 
 def _colour(
