@@ -111,9 +111,9 @@ def lines_at(recording: Recording, time_s: Floats) -> Ints:
     known = np.isfinite(time_s)
     if not len(recording.time_s) or not recording.blocks:
         return np.full(len(time_s), -1, dtype=np.int64)
-    sample = np.searchsorted(recording.time_s, np.where(known, time_s, 0.0))
-    sample = np.minimum(sample, len(recording.time_s) - 1)
-    return np.where(known, line_numbers(recording)[recording.block[sample]], -1)
+    last = np.append(np.flatnonzero(np.diff(recording.block)), len(recording.block) - 1)
+    stretch = np.searchsorted(recording.time_s[last[:-1]], np.where(known, time_s, 0.0))
+    return np.where(known, line_numbers(recording)[recording.block[last]].take(stretch), -1)
 
 
 def beside_the_work(recording: Recording, vectors: Floats) -> Floats:

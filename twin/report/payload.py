@@ -63,11 +63,11 @@ def encode(
     points = vertices[used]
     origin = points.min(axis=0)
     step = float(np.ptp(points, axis=0).max()) / STEPS or 1.0
-    steps = np.rint((points - origin) / step).astype(np.int64)
-    difference = np.diff(steps, axis=0, prepend=0).T.ravel()
-    zigzag = (difference << 1) ^ (difference >> 63)
+    steps = np.rint((points - origin).T / step).astype(np.int32)
+    difference = np.diff(steps, axis=1, prepend=np.int32(0)).ravel()
+    zigzag = (difference << 1) ^ (difference >> 31)
     # An index is at most one above all before it: written against that bound, most are small.
-    bound = np.maximum.accumulate(np.concatenate([[-1], renumbered]))[:-1] + 1
+    bound = np.maximum.accumulate(np.concatenate([[-1], renumbered[:-1]])) + 1
     raw = b"".join(
         (_bytes(zigzag, 4), _bytes(bound - renumbered, 4), colour[used].tobytes(), _bytes(labels, 2))
     )

@@ -65,12 +65,14 @@ def map_deviation(part: Part, unrolled: Unrolled) -> Maps | None:
 
     Between the vertices of a triangle the deviation is linear, as the mesh is flat there.
     """
-    patch = np.where(np.isfinite(part.deviation_um), unrolled.patch, NOWHERE)[part.faces]
-    kept = (patch[:, 0] >= 0) & (patch == patch[:, :1]).all(axis=1)
-    faces, patch = part.faces[kept].T, patch[kept, 0]
+    where = np.where(np.isfinite(part.deviation_um), unrolled.patch, NOWHERE)
+    corners = np.ascontiguousarray(part.faces.T)
+    a, b, c = (where.take(corner) for corner in corners)
+    kept = np.flatnonzero((a >= 0) & (a == b) & (a == c))
+    faces, patch = corners.take(kept, axis=1), a.take(kept)
     if not len(patch):
         return None
-    across, z = unrolled.across[faces], unrolled.z[faces]
+    across, z = unrolled.across.take(faces), unrolled.z.take(faces)
     spans = ((float(across.min()), float(across.max())), (float(z.min()), float(z.max())))
     count = sum(len(names) for _, names in unrolled.rows)
     width, height = _size(count, *spans)
@@ -79,7 +81,7 @@ def map_deviation(part: Part, unrolled: Unrolled) -> Maps | None:
         [
             (across - left) * (width / ((right - left) or 1.0)),
             (top - z) * (height / ((top - bottom) or 1.0)) + patch * height,
-            part.deviation_um[faces],
+            part.deviation_um.take(faces),
         ]
     ).astype(np.float32)
     corner = corner[:, :, np.abs(area(*corner[:2].swapaxes(0, 1))) > 1e-6]

@@ -73,7 +73,7 @@ def map_chart(unrolled: Unrolled, maps: Maps, scale: Scale) -> MapChart:
             drawing.text(MARGIN, top + 3.0, row, f"title {row.split()[0].lower()}")
             top += HEAD
             patches = [first + k for k in line]
-            picture = data_url(png_indexed(_strip(maps, patches, scale, GAP / pitch), colours))
+            picture = data_url(png_indexed(_strip(maps, patches, scale, GAP / pitch), colours, level=4))
             drawing.image(MARGIN, top, pitch * len(line), height, picture)
             for place, k in enumerate(line):
                 left = MARGIN + place * pitch

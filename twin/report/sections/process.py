@@ -74,8 +74,8 @@ def _areas(report: ReportData, count: int) -> list[float]:
     part = report.solid_part
     if report.recording is None or part is None or not len(part.face_time_s):
         return []
-    a, b, c = part.vertices[part.faces].transpose(1, 0, 2)
-    size = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    a, b, c = part.vertices.astype(np.float32).T.take(part.faces.T, axis=1).swapaxes(0, 1)
+    size = 0.5 * np.sqrt(np.square(np.cross(b - a, c - a, axis=0)).sum(axis=0, dtype=np.float64))
     line = lines_at(report.recording, part.face_time_s)
     return _rounded(np.bincount(line[line >= 0], size[line >= 0], minlength=count), 2)
 
