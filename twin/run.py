@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from controller.dry_run import DryRun
 from controller.language.source import load_program
 from controller.tables.alarms import as_json
 from twin.advice.advice import advice_as_json
@@ -67,8 +68,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         settings = settings_of(job, cutters, events=options.events)
         program = load_program(job.program)
         foreseen, advice = advised_run(job, cutters, settings, program)
-        lowest = foreseen.extents["Z"].machine[0] if "Z" in foreseen.extents else 0.0
-        ready = make_ready(job, cutters, lowest_z_mm=lowest + job.setup.reference.Z)
+        ready = make_ready(job, cutters, lowest_z_mm=_lowest_z(job, foreseen))
         require_analogue(ready, settings.parameters)
         cycle = foreseen.cycle_time_s
         blank = job.work.blank()
@@ -136,6 +136,15 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     with result_folder(out) as folder:
         _write(folder, outcome, deviation, watch)
     return outcome
+
+
+def _lowest_z(job: Job, foreseen: DryRun) -> float | None:
+    """How far the program takes the tool's centre towards the chuck, from the front face [mm]; None where the
+    dry run ended at a touch that only a machine can tell of."""
+    if foreseen.alarms and any(warning.number == "HT9133" for warning in foreseen.warnings):
+        return None
+    lowest = foreseen.extents["Z"].machine[0] if "Z" in foreseen.extents else 0.0
+    return lowest + job.setup.reference.Z
 
 
 def _write(folder: Path, outcome: Outcome, deviation: NDArray[np.float64], watch: Stopwatch) -> None:

@@ -15,6 +15,7 @@ from twin.compensation.text import (
     fits,
     phase_deg,
     remaining_slope_um,
+    rounding_um,
     table,
     theory,
 )
@@ -61,6 +62,7 @@ def render(found: Compensation) -> str:
         rows=[(name, number(a, 2), number(b, 2)) for name, a, b in table(found)],
         theory={key: number(value, 2) for key, value in theory(found).items()},
         rest={key: number(value, 2) for key, value in figures_of_uncertainty(found).items()},
+        words=number(rounding_um(found), 2),
         removal=None
         if stock is None or before is None or after is None
         else removal_chart(before, after, stock.stock_per_flank_mm * 1e3),

@@ -8,6 +8,8 @@ from twin.compensation.correction import Way
 from twin.compensation.walk import Compensation, Stage
 from twin.probing.circle import Circle
 
+HALF_WORD_UM = 0.5
+"""half of 0.001 mm, or of 0.001° in thousandths"""
 SHOWN = 3
 """gaps that the terminal shows"""
 
@@ -24,6 +26,7 @@ def lines(found: Compensation) -> list[str]:
         ),
         f"  uncertainty of the centre, 95 %: {centre.uncertainty_mm * 1e3:.2f} µm; as F_p "
         f"{figures_of_uncertainty(found)['cumulative_pitch_um']:.2f} µm",
+        f"  words of 0.001 mm and 0.001°: up to {rounding_um(found):.2f} µm of F_p",
     ]
     said.append(f"compensated by {found.way.value}")
     law = found.corrections
@@ -46,6 +49,15 @@ def figures_of_uncertainty(found: Compensation) -> dict[str, float]:
     """What the uncertainty of the centre leaves of F_p and F_r [µm]: as an eccentricity of that size."""
     rest = 2e3 * found.measurement.centre.uncertainty_mm
     return {"cumulative_pitch_um": rest / _cosine(found), "runout_um": rest}
+
+
+def rounding_um(found: Compensation) -> float:
+    """What words of 0.001 mm and 0.001° may make of F_p at the worst [µm]: X in diameter, C and, where the
+    machine has it, Y by half a word each, and the other way at another gap."""
+    radius = found.gear.measuring_diameter / 2.0
+    tangent = math.sqrt(1.0 / _cosine(found) ** 2 - 1.0)
+    across = HALF_WORD_UM if found.way is Way.ACROSS else 0.0
+    return 2.0 * (HALF_WORD_UM / 2.0 * tangent + across + math.radians(HALF_WORD_UM) * radius)
 
 
 def theory(found: Compensation) -> dict[str, float]:
@@ -141,6 +153,7 @@ def as_json(found: Compensation) -> dict[str, object]:
         ],
         "theory_um": theory(found),
         "left_by_uncertainty_um": figures_of_uncertainty(found),
+        "left_by_words_um": rounding_um(found),
         "before_um": figures(found.before),
         "after_um": figures(found.after),
     }

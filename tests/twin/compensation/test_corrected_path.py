@@ -84,6 +84,26 @@ def test_the_tool_passes_the_gear_as_it_would_a_true_one(gear_job, helix, phase)
         assert np.hypot(*off).max() < 1.2e-3
 
 
+def test_one_program_probes_and_grinds(gear_job):
+    """The control itself fits the circle, and the strokes that follow take e and phi from its variables."""
+    folder = gear_job(phase=-40.0)
+    original = load_program(folder / "program.nc")
+    text = (folder / "program.nc").read_text()
+    probing = "T0909\nG00 X60. Z-5.\nG65 P9810 A8. D20. Q0.4 R0.4 F60.\nG28 U0\nT0101\nG00 X60. Z20."
+    text = text.replace("G00 X60. Z20.", probing)
+    law = "#3=#514*COS[#515+#2]\nG00 Y[#514*SIN[#515+#2]]\nG00 X[26.2+2.*#3]"
+    text = text.replace("G00 X26.2000", law)
+    (folder / "program.nc").write_text(text)
+    job = read_job(folder)
+    true, _ = session(job, original, {"work_eccentricity_mm": 0.0})
+    found, _ = session(job, load_program(job.program), {})
+    assert found.alarms == ()
+    a, b = (_strokes(one.recording) for one in (true, found))
+    assert len(a) == len(b) == 15
+    for one, other in zip(a, b, strict=True):
+        assert np.abs(one[10, :2] - other[10, :2]).max() < 1.2e-3
+
+
 def _strokes(recording):
     """Tool centres of every stroke at depth, ascending in z."""
     reach = np.hypot(*recording.tool_centre_mm[:, :2].T)
