@@ -28,6 +28,12 @@ Progress = Callable[[str, float], None]
 
 PLACES = 8_000_000
 """Places on rings that a run has where no resolution is asked for; it may have eight times as many."""
+FINE = 75.0
+"""Rings in the pitch of a hob's teeth, or in the width of another tool's edge"""
+AROUND = 1.5
+"""Steps between the places on the rings of a hobbed part: what lies between them is searched for"""
+LONG = 3.0
+"""Steps between its rings along the axis: a hob's chips are as long as it is wide"""
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
@@ -116,7 +122,8 @@ def chips(
     # the coarsest blocks are sixths of a turn at most, and their hulls stand out of the blank
     hull = blank.radius / math.cos(math.pi / 6.0)
     sweep = Sweep(tuple(tool_field(c, m, hull, blank.z_range) for c, m in tools))
-    rings = Rings.of(blank, step)
+    around, along = _wide(tools)
+    rings = Rings.of(blank, step, around=step * around, along=step * along)
     shares: list[_Shares] = []
     slabs = list(rings.slabs()) if sweep.passes else []
     for number, low in enumerate(slabs):
@@ -127,12 +134,12 @@ def chips(
 
 
 def _step(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], resolution: float | None) -> float:
-    """The resolution asked for, or a fortieth of the tooth pitch or of the edge's width [mm]."""
+    """The resolution asked for, or what FINE says [mm]."""
     volume = math.pi * blank.radius**2 * blank.length_mm
-    usual = (volume / PLACES) ** (1.0 / 3.0)
+    usual = (volume / (PLACES * math.prod(_wide(tools)))) ** (1.0 / 3.0)
     if resolution is None:
         wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c, _ in tools]
-        return max(min([blank.radius, *wide]) / 40.0, usual)
+        return max(min([blank.radius, *wide]) / FINE, usual)
     if not (math.isfinite(resolution) and resolution > 0):
         raise InputError(f"a resolution of {resolution:g} mm", remedy="valid: above 0, for example 0.1")
     if resolution < usual / 2.0:
@@ -171,6 +178,11 @@ def removed(sweep: Sweep, rings: Rings, found: Intervals, longest: float) -> Rem
     wide = np.repeat((end - start) / parts, parts)
     owner, start = np.repeat(owner, parts), np.repeat(start, parts) + number * wide
     return Removed(found.ring[owner], start, wide, found.bite[owner], found.instant[owner])
+
+
+def _wide(tools: tuple[tuple[Cutter, CutterMotion], ...]) -> tuple[float, float]:
+    """Steps around and along the axis for one across the rings."""
+    return (AROUND, LONG) if all(math.isfinite(cutter.profile.pitch) for cutter, _ in tools) else (1.0, 1.0)
 
 
 def _shares(sweep: Sweep, rings: Rings, found: Intervals, step: float) -> _Shares:
@@ -229,6 +241,16 @@ def _foot(sweep: Sweep, meeting: Meeting, bite: Ints) -> tuple[Floats, Floats]:
     return foot, slope
 
 
+def _kinds(*columns: Ints) -> tuple[Ints, Ints]:
+    """The different rows (k, c) of some columns (n,), in order, and which of them each row is."""
+    order = np.lexsort(columns[::-1])
+    rows = np.column_stack(columns)[order]
+    new = np.concatenate([[True], (rows[1:] != rows[:-1]).any(axis=1)])[: len(rows)]
+    number = np.zeros(len(rows), dtype=np.int64)
+    number[order] = np.cumsum(new) - 1
+    return rows[new], number
+
+
 def _summed(
     sweep: Sweep, tools: tuple[tuple[Cutter, CutterMotion], ...], shares: list[_Shares], step: float
 ) -> Chips:
@@ -247,8 +269,7 @@ def _summed(
         turn[here], number = np.divmod(own[here], field.bites)
         tooth[here] = field.tooth[number]
         time[here] = np.interp(instant[here], np.arange(len(motion.time_s)), motion.time_s)
-    kinds, chip = np.unique(np.column_stack([stretch, turn, tooth]), axis=0, return_inverse=True)
-    chip = chip.reshape(-1)
+    kinds, chip = _kinds(stretch, turn, tooth)
     n = len(kinds)
     total, mean = np.zeros(n), np.zeros(n)
     np.add.at(total, chip, volume)
@@ -257,9 +278,10 @@ def _summed(
     np.maximum.at(largest, chip, height.max(axis=1))
     np.minimum.at(begin, chip, time)
     side = 2.0 * step
-    _, one = np.unique(
-        np.column_stack([chip, np.floor(foot / side).astype(np.int64)]), axis=0, return_index=True
-    )
+    square = np.floor(foot / side).astype(np.int64)
+    order = np.lexsort((square[:, 1], square[:, 0], chip))
+    row = np.column_stack([chip, square])[order]
+    one = order[np.concatenate([[True], (row[1:] != row[:-1]).any(axis=1)])[: len(order)]]
     width = np.zeros(n)
     np.add.at(width, chip[one], side * slope[one])
     order = np.lexsort((kinds[:, 2], kinds[:, 1], begin))

@@ -29,7 +29,7 @@ Progress = Callable[[str, float], None]
 
 CRUMB = 1e-6
 """[mm³] below which a severed piece is rounding"""
-FORMED_ERROR = 0.5
+FORMED_ERROR = 0.1
 """[µm] off the envelope from which a cut is not one of strokes along gaps"""
 
 

@@ -32,19 +32,22 @@ class Rings:
     """(nr, nz) area of the blank's section that each ring stands for, times its radius [mm³/rad]"""
 
     @classmethod
-    def of(cls, blank: Blank, step: float) -> "Rings":
-        """Rings that are about `step` apart [mm]."""
+    def of(
+        cls, blank: Blank, step: float, *, around: float | None = None, along: float | None = None
+    ) -> "Rings":
+        """Rings about `step` apart, with places about as far apart, or `around`; `along` the axis [mm]."""
         low = blank.bore_mm / 2.0
         nr = max(1, math.ceil((blank.radius - low) / step))
-        nz = max(1, math.ceil(blank.length_mm / step))
-        sectors = COARSEST * max(6, math.ceil(2.0 * math.pi * blank.radius / step / COARSEST))
+        nz = max(1, math.ceil(blank.length_mm / (along or step)))
+        sectors = COARSEST * max(6, math.ceil(2.0 * math.pi * blank.radius / (around or step) / COARSEST))
         r = np.linspace(low, blank.radius, nr + 1)
         z = np.linspace(*blank.z_range, nz + 1)
         outer = blank.outer_radius(0.5 * (z[1:] + z[:-1]))
         # the share of each cell that is inside the blank at the middle of its height
         inside = np.clip(outer - r[:-1, None], 0.0, np.diff(r)[:, None])
         middle = 0.5 * (r[1:] + r[:-1])
-        return cls(grid=Grid(r=r, sectors=sectors, z=z), weight=middle[:, None] * inside * np.diff(z))
+        weight = middle[:, None] * inside * np.diff(z)
+        return cls(grid=Grid(r=r, sectors=sectors, z=z), weight=weight)
 
     @property
     def radius(self) -> Floats:
@@ -108,9 +111,45 @@ def intervals(sweep: Sweep, rings: Rings, low: Ints) -> Intervals:
     middle = (first + last) // 2
     rows = np.flatnonzero(~gone)
     first, last, middle = first[rows], last[rows], middle[rows]
-    start = _ends(sweep, rings, ring[first], bite[first], (begin[rows], -1))
-    end = _ends(sweep, rings, ring[first], bite[first], (place[last], 1))
-    return Intervals(ring[first], start, end, bite[first], instant[middle])
+    passed = pass_order(sweep, bite)
+    taken = _Taken.of(ring * sectors + place, passed, np.append(~begins[1:], False)[: len(ring)])
+    sides = []
+    for places, way in ((begin[rows], -1), (place[last], 1)):
+        between = ring[first] * sectors + (places + min(way, 0)) % sectors
+        own = np.flatnonzero(~taken.before(between, passed[first]))
+        at = rings.grid.angle(places) + rings.grid.angle(np.array(0.5 * way))
+        at[own] = _ends(sweep, rings, ring[first[own]], bite[first[own]], (places[own], way))
+        sides.append(at)
+    return Intervals(ring[first], sides[0], sides[1], bite[first], instant[middle])
+
+
+@dataclass(frozen=True, slots=True)
+class _Taken:
+    """Stretches between neighbouring places of a ring that a pass takes as a whole, and the first to do so.
+
+    Where a later pass ends within one of them does not matter.
+    """
+
+    place: Ints
+    """(n,) ascending: number of the place before the stretch"""
+    passed: Ints
+    """(n,) order of the first pass"""
+
+    @classmethod
+    def of(cls, place: Ints, passed: Ints, goes_on: NDArray[np.bool_]) -> "_Taken":
+        """From places that passes remove, and whether (m,) a pass goes on to the next place."""
+        place, passed = place[goes_on], passed[goes_on]
+        order = np.lexsort((passed, place))
+        place, passed = place[order], passed[order]
+        new = np.flatnonzero(np.diff(place, prepend=-1))
+        return cls(place[new], passed[new])
+
+    def before(self, place: Ints, passed: Ints) -> NDArray[np.bool_]:
+        """Whether (k,) the stretches behind some places are taken before a pass."""
+        if not len(self.place):
+            return np.zeros(len(place), dtype=bool)
+        at = np.minimum(np.searchsorted(self.place, place), len(self.place) - 1)
+        return (self.place[at] == place) & (self.passed[at] < passed)
 
 
 def pass_order(sweep: Sweep, bite: Ints) -> Ints:

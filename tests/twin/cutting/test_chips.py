@@ -101,9 +101,27 @@ def test_all_chips_together_are_what_the_part_lost(synthetic):
         part = cut(blank, (tool,), cell_mm=0.12).remains
         lost = part.blank_volume_mm3 - part.volume_mm3 + 0.0 - sum(part.loose_volumes_mm3)
         made = chips(blank, (tool,), resolution_mm=0.12)
-        assert made.total_mm3 == pytest.approx(lost, rel=2e-3)
+        assert made.total_mm3 == pytest.approx(lost, rel=1e-3)
         assert (np.diff(made.time_s) >= 0).all()
         assert made.thickness_max_mm.max() < 2.25 * 2.0
+
+
+def test_twice_the_resolution_changes_no_hobbed_chip_by_two_percent(synthetic):
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+    blank = Blank(diameter_mm=24.0, length_mm=0.5, bore_mm=14.0)
+    tool = synthetic.hobbing(hob, teeth=10, tip_x=7.5, z=(1.0, -1.5), feed=2.0, step_deg=6.0)
+    coarse, fine = (chips(blank, (tool,), resolution_mm=step) for step in (0.08, 0.04))
+    # what is a twentieth of the largest, or more
+    rows = np.flatnonzero(fine.volume_mm3 > 0.05 * fine.volume_mm3.max())
+    assert len(rows) > 30
+    named = {key: row for row, key in enumerate(zip(coarse.turn, coarse.tooth, strict=True))}
+    same = [named[key] for key in zip(fine.turn[rows], fine.tooth[rows], strict=True)]
+    np.testing.assert_allclose(coarse.volume_mm3[same], fine.volume_mm3[rows], rtol=0.02)
+    np.testing.assert_allclose(coarse.thickness_mean_mm[same], fine.thickness_mean_mm[rows], rtol=0.02)
+    # a wedge's tip may stand between two rings
+    off = coarse.thickness_max_mm[same] / fine.thickness_max_mm[rows] - 1.0
+    assert np.quantile(np.abs(off), 0.8) < 0.02
+    assert coarse.total_mm3 == pytest.approx(fine.total_mm3, rel=1e-3)
 
 
 def test_a_second_pass_over_the_same_way_takes_nothing(synthetic):
