@@ -73,9 +73,12 @@ class DepthField:
         spread = self._spread(stock)
         teeth = profile.teeth(*spread)
         pieces = len(profile.pieces)
-        has_land = math.isfinite(profile.root)
+        self.has_land: bool = math.isfinite(profile.root)
+        """whether the last bite of a pass is the land"""
+        self.samples: int = len(motion.tool_angle)
+        """of the motion"""
         self._land = len(teeth) * pieces
-        self.bites: int = self._land + has_land
+        self.bites: int = self._land + self.has_land
         """of a pass: the pieces of the teeth that can reach the stock and, last, the land between them"""
         pitch = profile.pitch if math.isfinite(profile.pitch) else 0.0
         self.tooth: Ints = np.append(np.repeat(teeth, pieces), 0)[: self.bites]

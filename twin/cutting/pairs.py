@@ -80,8 +80,11 @@ def batches(start: Ints, size: int = BATCH) -> Iterator[slice]:
 
 def in_parallel(work: Callable[[slice], T], slices: Iterator[slice]) -> list[T]:
     """`work` on every slice, results in order; the arrays' own loops run outside the interpreter lock."""
+    parts = list(slices)
+    if len(parts) < 2:
+        return [work(part) for part in parts]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(work, slices))
+        return list(pool.map(work, parts))
 
 
 def leaders(values: Floats, start: Ints) -> tuple[Floats, Ints]:

@@ -92,8 +92,22 @@ def find_passes(
     passes = _bounded(cutter, motion, (stock.radius, reach, far), edges)
     samples = np.arange(len(motion.tool_angle), dtype=float)
     centre = np.stack([np.interp(passes.at, samples, column) for column in motion.centre.T], axis=1)
-    keep = ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried + lean * far)
+    keep = _closed(
+        ~stock.clear_of(centre, motion.basis, cutter.radius + passes.carried + lean * far),
+        len(cutter.gash_angle),
+    )
     return Passes(**{name: getattr(passes, name)[keep] for name in Passes.__dataclass_fields__})
+
+
+def _closed(keep: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
+    """Also keep up to `most` passes between two that are kept: a tool off its axis comes near by turns."""
+    kept = np.flatnonzero(keep)
+    between = np.diff(kept)
+    filled = keep.copy()
+    for first, count in zip(kept[:-1][between > 1], between[between > 1], strict=True):
+        if count <= most:
+            filled[first : first + count] = True
+    return filled
 
 
 def _bounded(

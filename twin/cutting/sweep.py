@@ -1,5 +1,6 @@
 """All tools' depth fields as one: their bites numbered through."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,18 +37,41 @@ class Deepest:
         return Deepest(self.depth[rows], self.gradient[rows], self.bite[rows])
 
 
+@dataclass(frozen=True, slots=True)
+class Images:
+    """Points seen from the blocks that stand for theirs, some passes earlier (`regular/screw.py`)."""
+
+    points: Floats
+    """(n, 3) their places in those blocks"""
+    later: Ints
+    """(n,) bites by which the points' own come after the blocks'"""
+    bites: Ints
+    """(2, n) first and last of those that there are"""
+
+
 class Sweep:
     """The union of everything that the tools of a run sweep."""
 
-    def __init__(self, fields: tuple[Field, ...]) -> None:
+    def __init__(self, fields: tuple[Field, ...], margin: float = 0.0) -> None:
         self.fields = fields
+        self.margin = margin
+        """what all bounds leave for a motion that is a little off the recorded one [mm of depth]"""
         counts = [f.count for f in fields]
         self._first = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+
+    @property
+    def count(self) -> int:
+        """Number of bites."""
+        return int(self._first[-1])
 
     @property
     def passes(self) -> int:
         """Number of passes."""
         return sum(f.passes.count for f in self.fields)
+
+    def widened(self, margin: float) -> "Sweep":
+        """The same with bounds that leave room for a motion by which depths differ up to `margin` [mm]."""
+        return Sweep(self.fields, margin)
 
     def unculled(self, points: Floats) -> Floats:
         """Largest depths (n,) at points (n, 3) of all passes whose tool comes within BEYOND of them.
@@ -61,7 +85,9 @@ class Sweep:
                 lists = [f.near(point, BEYOND) for point in points[part]]
                 row = np.repeat(np.arange(len(lists)), [len(index) for index in lists])
                 found = f.evaluate(points[part][row], np.concatenate(lists)).depth
-                np.maximum.at(depth, row, found)
+                start = np.searchsorted(row, np.arange(len(lists) + 1))
+                some = np.flatnonzero(np.diff(start))
+                depth[some] = np.maximum(depth[some], np.maximum.reduceat(found, start[some]))
             return depth
 
         slices = (slice(row, min(row + TOGETHER, len(points))) for row in range(0, len(points), TOGETHER))
@@ -89,22 +115,25 @@ class Sweep:
     def bound(self, meeting: Meeting, index: Ints, radius: Floats) -> tuple[Floats, Floats]:
         """As `DepthField.bound`, for bites of any tool."""
         if len(self.fields) == 1:
-            return self.fields[0].bound(meeting, index, radius)
+            change, bent = self.fields[0].bound(meeting, index, radius)
+            return change + self.margin, bent + self.margin
         out = (np.zeros(len(index)), np.zeros(len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
             bounds = f.bound(meeting.of(here), index[here] - self._first[n], radius[here])
             for whole, piece in zip(out, bounds, strict=True):
-                whole[here] = piece
+                whole[here] = piece + self.margin
         return out
 
     def floors(self, points: Floats, corners: Floats, index: Ints, radius: Floats) -> Floats:
         """As `DepthField.floors`, for bites of any tool."""
+        if len(self.fields) == 1:
+            return self.fields[0].floors(points, corners, index, radius) - self.margin
         out = np.zeros((corners.shape[1], len(index)))
         for n, f in enumerate(self.fields):
             here = self._of(n, index)
             out[:, here] = f.floors(points[here], corners[here], index[here] - self._first[n], radius[here])
-        return out
+        return out - self.margin
 
     def near(self, points: Floats, radius: Floats) -> Candidates:
         """Bites that may cut within `radius` (n,) of points (n, 3)."""
@@ -113,22 +142,43 @@ class Sweep:
             row = part.start
             found = []
             for n, f in enumerate(self.fields):
-                index = f.near(points[row], float(radius[row]))
+                reach = float(radius[row]) + 2.0 * self.margin
+                index = f.near(points[row], reach)
                 at = np.broadcast_to(points[row], (len(index), 3))
-                found.append(f.bites_near(at, index, np.full(len(index), radius[row]))[1] + self._first[n])
+                found.append(f.bites_near(at, index, np.full(len(index), reach))[1] + self._first[n])
             bites = np.concatenate(found)
             return Candidates(np.array([0, len(bites)]), bites)
 
         return join(in_parallel(work, (slice(row, row + 1) for row in range(len(points)))))
 
+    def near_of(self, points: Floats, radius: Floats, passes: Sequence[Sequence[Ints]]) -> Candidates:
+        """As `near`, of some passes only: given for each point and each tool."""
+        found = []
+        for point, reach, tools in zip(points, radius, passes, strict=True):
+            own = [np.zeros(0, dtype=np.int64)]
+            for n, (f, index) in enumerate(zip(self.fields, tools, strict=True)):
+                at = np.broadcast_to(point, (len(index), 3))
+                own.append(f.bites_near(at, index, np.full(len(index), reach))[1] + self._first[n])
+            bites = np.concatenate(own)
+            found.append(Candidates(np.array([0, len(bites)]), bites))
+        return join(found)
+
     def deepest(
-        self, points: Floats, block: Ints, tangents: Tangents, *, gradient: bool = False, sign: bool = False
+        self,
+        points: Floats,
+        block: Ints,
+        tangents: Tangents,
+        *,
+        gradient: bool = False,
+        sign: bool = False,
+        images: Images | None = None,
     ) -> Deepest:
-        """The deepest of the bites of each point's `block` (n,) in `tangents`.
+        """The deepest of the bites of each point's `block` (n,) in `tangents`, or of their `images`.
 
         The bite whose tangent stands highest is evaluated, and then those whose upper bound is above it.
         Where only the `sign` is asked for, it comes with a depth and a bite that are about right.
         """
+        home = points if images is None else images.points
         depth = np.full(len(points), -np.inf)
         slope = np.zeros((len(points) if gradient else 0, 3))
         winner = np.full(len(points), -1, dtype=np.int64)
@@ -138,46 +188,69 @@ class Sweep:
 
         def work(part: slice) -> None:
             items = some[part]
-            own = block[items]
-            count = length[items]
-            pairs = lists.pairs(own)
+            own, count = block[items], length[items]
+            pairs, start = lists.pairs(own), np.concatenate([[0], np.cumsum(count)])
             owner = np.repeat(np.arange(len(items)), count)
-            way = points[items] - tangents.middle[own]
-            level, over = tangents.plane.take(pairs, axis=1), tangents.over.take(pairs)
-            height = level[0]
+            way = home[items] - tangents.middle[own]
+            plane = tangents.plane.take(pairs, axis=1)
+            height, bites = plane[0], lists.bites.take(pairs)
             for x in range(3):
-                height += level[1 + x] * way[:, x].take(owner)
-            _, first = leaders(height, np.concatenate([[0], np.cumsum(count)]))
-            upper = height + over
+                height += plane[1 + x] * way[:, x].take(owner)
+            upper = height + tangents.over.take(pairs)
             out = np.einsum("nx,nx->n", way, way) > (tangents.radius[own] * (1.0 + ROUNDING)) ** 2
             if out.any():
                 upper[out[owner]] = np.inf
-            best = self.evaluate(points[items], lists.bites[pairs[first]], gradient=gradient)
-            floor, leading = best.depth, pairs[first]
+            if images is not None:
+                bites += images.later[items].take(owner)
+                first, last = images.bites[:, items]
+                missing = (bites < first.take(owner)) | (bites > last.take(owner))
+                height[missing] = upper[missing] = -np.inf
+            found = self._highest(points[items], (bites, height, upper), start, gradient=gradient, sign=sign)
+            depth[items], winner[items] = found.depth, found.bite
             if gradient:
-                slope[items] = best.gradient
-            rivals = upper > floor[owner]
-            rivals[first] = False
-            if sign:
-                rivals &= (floor <= 0)[owner]
-                rivals &= upper > 0
-            rivals = np.flatnonzero(rivals)
-            if len(rivals):
-                who = owner[rivals]
-                other = self.evaluate(points[items[who]], lists.bites[pairs[rivals]], gradient=gradient)
-                start = np.concatenate([[0], np.flatnonzero(np.diff(who)) + 1, [len(who)]])
-                deepest, at = leaders(other.depth, start)
-                who = who[start[:-1]]
-                higher = deepest > floor[who]
-                floor[who[higher]] = deepest[higher]
-                leading[who[higher]] = pairs[rivals[at[higher]]]
-                if gradient:
-                    slope[items[who[higher]]] = other.gradient[at[higher]]
-            depth[items] = floor
-            winner[items] = lists.bites[leading]
+                slope[items] = found.gradient
 
         in_parallel(work, batches(np.concatenate([[0], np.cumsum(length[some])]), LISTED))
         return Deepest(depth, slope, winner)
+
+    def _highest(
+        self,
+        points: Floats,
+        pairs: tuple[Ints, Floats, Floats],
+        start: Ints,
+        *,
+        gradient: bool,
+        sign: bool,
+    ) -> Deepest:
+        """The deepest of the bites (m,) whose lists for points (n, 3) begin at `start` (n + 1,).
+
+        `pairs` are the bites, how high their tangents stand, −inf where there is none, and upper bounds.
+        """
+        bites, height, upper = pairs
+        owner = np.repeat(np.arange(len(points)), np.diff(start))
+        level, first = leaders(height, start)
+        none = level == -np.inf
+        best = self.evaluate(points, np.where(none, 0, bites[first]), gradient=gradient)
+        floor, leading, slope = best.depth, bites[first], best.gradient
+        floor[none], leading[none] = -np.inf, -1
+        rivals = upper > floor[owner]
+        rivals[first] = False
+        if sign:
+            rivals &= (floor <= 0)[owner]
+            rivals &= upper > 0
+        rivals = np.flatnonzero(rivals)
+        if len(rivals):
+            who = owner[rivals]
+            other = self.evaluate(points[who], bites[rivals], gradient=gradient)
+            begin = np.concatenate([[0], np.flatnonzero(np.diff(who)) + 1, [len(who)]])
+            deepest, at = leaders(other.depth, begin)
+            who = who[begin[:-1]]
+            higher = deepest > floor[who]
+            floor[who[higher]] = deepest[higher]
+            leading[who[higher]] = bites[rivals[at[higher]]]
+            if gradient:
+                slope[who[higher]] = other.gradient[at[higher]]
+        return Deepest(floor, slope, leading)
 
     def tool(self, bite: Ints) -> Ints:
         """Number (m,) of the tool that each bite belongs to."""

@@ -21,7 +21,7 @@ FACE = 1.2
 CELL = 0.07
 
 
-def gear(synthetic, *, teeth=12, helix_deg=0.0, module=1.0, hob=None, **more):
+def gear(synthetic, *, teeth=12, helix_deg=0.0, module=1.0, hob=None, feed=1.0, **more):
     """Blank and tool of a gear of full depth, hobbed from well above its face to well below."""
     hob = hob or Hob(normal_module_mm=module, outside_diameter_mm=30.0 * module, gashes=9)
     reference = module * teeth / math.cos(math.radians(helix_deg))
@@ -34,7 +34,7 @@ def gear(synthetic, *, teeth=12, helix_deg=0.0, module=1.0, hob=None, **more):
         helix_deg=helix_deg,
         tip_x=reference / 2.0 - 1.25 * module,
         z=(run, -FACE - run),
-        feed=1.0 * module,
+        feed=feed * module,
         step_deg=8.0,
         **more,
     )

@@ -112,6 +112,8 @@ class Chart:
     """(nu + 1,) way on to the middle of the tooth and beyond [mm]"""
     z: Floats
     """(nz + 1,) ascending [mm]"""
+    lift: Floats
+    """(gaps,) by which each gap's nodes stand higher than `z` [mm]"""
 
     @property
     def gaps(self) -> int:
@@ -129,17 +131,18 @@ class Chart:
         The arguments are of one shape, or broadcast to one.
         """
         indexing = self.frame.indexing
-        angle = indexing.phase + 2.0 * math.pi / self.gaps * gap + indexing.twist * self.z[k]
+        z = self.z[k] + self.lift[gap]
+        angle = indexing.phase + 2.0 * math.pi / self.gaps * gap + indexing.twist * z
         cos, sin = np.cos(angle), np.sin(angle)
         dx, dy = self.along[i, 0], self.along[i, 1]
         x, y = self.surface[i, 0] + tau * dx, self.surface[i, 1] + tau * dy
-        points = np.stack(np.broadcast_arrays(x * cos - y * sin, x * sin + y * cos, self.z[k]), axis=-1)
+        points = np.stack(np.broadcast_arrays(x * cos - y * sin, x * sin + y * cos, z), axis=-1)
         ways = np.stack(np.broadcast_arrays(dx * cos - dy * sin, dx * sin + dy * cos, 0.0 * cos), axis=-1)
         rotation, shift = self.mount.rotation, self.mount.translation
         return (points - shift) @ rotation, ways @ rotation
 
 
-def chart_along(frame: Frame, mount: RigidTransform, surface: Floats, z: Floats) -> Chart:
+def chart_along(frame: Frame, mount: RigidTransform, surface: Floats, z: Floats, lift: Floats) -> Chart:
     """The chart of a surface (nu + 1, 2) from the one tip to the other. Raises IrregularError for no gap."""
     fan, top = frame.fan, frame.outside
     first = max(surface[0, 0], surface[-1, 0])
@@ -158,7 +161,9 @@ def chart_along(frame: Frame, mount: RigidTransform, surface: Floats, z: Floats)
     outer = np.where(fanned, BEYOND, 1.0) * frame.reach(start, along) - inner
     if not (np.isfinite(outer).all() and outer.min() > 0):
         raise IrregularError("the gap is wider than its pitch")
-    chart = Chart(frame=frame, mount=mount, surface=surface, along=along, inner=inner, outer=outer, z=z)
+    chart = Chart(
+        frame=frame, mount=mount, surface=surface, along=along, inner=inner, outer=outer, z=z, lift=lift
+    )
     _check_cover(chart)
     return chart
 

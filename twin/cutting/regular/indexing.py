@@ -46,7 +46,7 @@ def find_indexing(cutter: Cutter, motion: CutterMotion, radius: float) -> Indexi
     root = float(distance.min()) - profile.tip
     if not 0 < root < radius:
         raise IrregularError("the tips do not come between the work's axis and its outside")
-    deep = _last_run(distance - distance.min() < AT_DEPTH * (radius - root))
+    deep = at_depth(motion, root, radius)
     tool, work, centre = motion.tool_angle[deep], motion.work_angle[deep], motion.centre[deep]
     height = centre[:, 2]
     if np.ptp(height) < profile.pitch or not np.ptp(tool):
@@ -74,6 +74,12 @@ def find_indexing(cutter: Cutter, motion: CutterMotion, radius: float) -> Indexi
     z = middle[1] + axis[2] * s
     phase = across_y / rolling - float(work.mean()) - twist * z
     return Indexing(teeth=teeth, twist=twist, phase=math.remainder(phase, 2.0 * math.pi), root=root)
+
+
+def at_depth(motion: CutterMotion, root: float, radius: float) -> slice:
+    """The last samples in which the tool keeps to its full depth, given the radii of root and blank [mm]."""
+    distance = axes_apart(motion)
+    return _last_run(distance - distance.min() < AT_DEPTH * (radius - root))
 
 
 def _last_run(rows: NDArray[np.bool_]) -> slice:

@@ -9,14 +9,18 @@ from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
 from twin.cutting.engagement import StockCylinder, axes_apart, sway
+from twin.cutting.field import DepthField
 from twin.cutting.motion import CutterMotion
 from twin.cutting.regular.chart import Frame, chart_along
-from twin.cutting.regular.indexing import find_indexing
-from twin.cutting.regular.inside import prove_inside
+from twin.cutting.regular.indexing import Indexing, find_indexing
 from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.regular.proved import prove
+from twin.cutting.regular.screw import lay_out
 from twin.cutting.regular.section import bend, section, spaced
 from twin.cutting.regular.skin import skin
-from twin.cutting.regular.tiles import Tiling, search
+from twin.cutting.regular.steady import find_steady
+from twin.cutting.regular.templates import Screwed
+from twin.cutting.regular.tiles import Tiling
 from twin.cutting.regular.tubes import tubes
 from twin.cutting.sweep import Sweep
 
@@ -28,6 +32,8 @@ RIM = 1.5
 """Cells by which the charts reach out of the blank."""
 FINEST = 4e-3
 """Share of the tooth height below which no cell is chosen."""
+ASTRAY = 0.1
+"""Share of the shell's thickness by which a steady motion may stand off a screw."""
 LIMIT = 450_000
 """Cells, of about 2 kB each at the peak, beyond which a cut is left to the general way."""
 
@@ -72,17 +78,38 @@ def regular_cut(
     if min(_lowest(c, m, stock) for c, m in tools) < frame.core:
         raise IrregularError("something is cut below the root")
     surface = spaced(found, frame.outside, across, tiling.across)
-    length = stock.z_high - stock.z_low + 2.0 * along
-    count = tiling.along * math.ceil(length / (along * tiling.along))
-    if indexing.teeth * count * len(surface) > LIMIT:
+    screwed = _screwed(sweep, motion, indexing, stock, (along, thick))
+    if screwed is None:
+        length = stock.z_high - stock.z_low + 2.0 * along
+        count = tiling.along * math.ceil(length / (along * tiling.along))
+        middle = 0.5 * (stock.z_low + stock.z_high)
+        z = middle + along * (np.arange(count + 1, dtype=np.float64) - 0.5 * count)
+        lift = np.zeros(indexing.teeth)
+    else:
+        z, lift = screwed.layout.z, screwed.layout.lift
+    if indexing.teeth * len(z) * len(surface) > LIMIT:
         raise IrregularError("more cells than the memory allows")
-    middle = 0.5 * (stock.z_low + stock.z_high)
-    z = middle + along * (np.arange(count + 1, dtype=np.float64) - 0.5 * count)
-    chart = chart_along(frame, motion.mount, surface, z)
-    patch, held = search(sweep, chart, tiling, thick)
-    prove_inside(sweep, chart, patch, held.tangents, thick)
-    made = skin(sweep, chart, patch, held.tangents, thick)
-    return Regular(tubes(chart, made), (across, along), held.pairs)
+    chart = chart_along(frame, motion.mount, surface, z, lift)
+    proved = prove(sweep, chart, tiling, thick, screwed)
+    made = skin(sweep, proved, thick)
+    return Regular(tubes(chart, made), (across, float(z[1] - z[0])), proved.pairs)
+
+
+def _screwed(
+    sweep: Sweep,
+    motion: CutterMotion,
+    indexing: Indexing,
+    stock: StockCylinder,
+    sizes: tuple[float, float],
+) -> Screwed | None:
+    """The screw of a steady motion, for cells so long and a shell so thick; None without one."""
+    field = sweep.fields[-1]
+    if not isinstance(field, DepthField):
+        return None
+    along, thick = sizes
+    steady = find_steady(field, motion, indexing, stock, ASTRAY * thick)
+    layout = steady and lay_out(indexing, steady, (stock.z_low, stock.z_high), along)
+    return Screwed(steady=steady, layout=layout) if steady and layout else None
 
 
 def _lowest(cutter: Cutter, motion: CutterMotion, stock: StockCylinder) -> float:

@@ -34,6 +34,7 @@ def section(sweep: Sweep, frame: Frame, mount: RigidTransform, z: float) -> Floa
         inner=np.zeros(len(start)),
         outer=reach,
         z=np.array([z - THIN, z, z + THIN]),
+        lift=np.zeros(frame.indexing.teeth),
     )
     n = len(start)
     rays = np.arange(n)

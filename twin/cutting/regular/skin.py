@@ -1,15 +1,15 @@
 """The cut surface in a proved chart: exact crossings on all rays, vertices where their planes meet."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutting.local import Tangents
-from twin.cutting.pairs import batches, in_parallel
-from twin.cutting.regular.chart import Chart
-from twin.cutting.regular.tiles import Patches
-from twin.cutting.sweep import Sweep
+from twin.cutting.pairs import in_parallel
+from twin.cutting.regular.proved import Proved
+from twin.cutting.sweep import Images, Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -19,6 +19,8 @@ SETTLED = 2e-4
 another bite takes over, a share of it."""
 ROUNDS = 5
 """of Newton's method"""
+CHUNK = 1 << 12
+"""Nodes that are worked on at once: what they need stays in the cache."""
 STIFFNESS = 1e-6
 """What a vertex's way from the middle costs, against its distance from the planes, both squared: feed marks
 and generating flats differ by a hundredth of a radian."""
@@ -38,22 +40,26 @@ class Skin:
     """(gaps, nu, nz) the deepest bite at each vertex"""
 
 
-def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: float) -> Skin:
-    """The surface on patches, all of one size, with the bites that can make it there."""
+def skin(sweep: Sweep, proved: Proved, thick: float) -> Skin:
+    """The surface of a chart, with the bites that can make it there."""
+    chart = proved.chart
     nu, nz = chart.cells
-    home = _homes(chart, patch)
-    points, normals = _crossings(sweep, chart, home, tangents, thick)
-    guess = _meet(points, normals)
-    block = home.reshape(-1)
-    vertices = np.ascontiguousarray(guess.reshape(-1, 3))
+    shape = chart.gaps, nu + 1, nz + 1
+    points, normals = np.zeros((2, math.prod(shape), 3))
+
+    def cross(part: slice) -> None:
+        points[part], normals[part] = _crossings(sweep, proved, _Nodes.of(proved, shape, part), thick)
+
+    in_parallel(cross, _chunks(len(points)))
+    points, normals = points.reshape(*shape, 3), normals.reshape(*shape, 3)
+    vertices = np.ascontiguousarray(_meet(points, normals).reshape(-1, 3))
     bite = np.zeros(len(vertices), dtype=np.int64)
-    left = np.arange(len(vertices))
-    for _ in range(ROUNDS):
-        found = sweep.deepest(vertices[left], block[left], tangents, gradient=True)
-        bite[left] = found.bite
-        step = found.depth / np.einsum("nx,nx->n", found.gradient, found.gradient)
-        vertices[left] -= step[:, None] * found.gradient
-        left = left[np.abs(step) > SETTLED]
+
+    def settle(part: slice) -> None:
+        nodes = _Nodes.of(proved, (chart.gaps, nu, nz), part)
+        vertices[part], bite[part] = _settled(sweep, proved, nodes, vertices[part])
+
+    in_parallel(settle, _chunks(len(vertices)))
     vertices = vertices.reshape(chart.gaps, nu, nz, 3)
     # four vertices stand around a crossing: split them along the diagonal that comes nearer to it
     inner = points[:, 1:-1, 1:-1], normals[:, 1:-1, 1:-1]
@@ -62,62 +68,101 @@ def skin(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: 
     return Skin(vertices, one < other, bite.reshape(vertices.shape[:3]))
 
 
-def _off(points: Floats, normals: Floats, ends: Floats) -> Floats:
-    """How far the middles of some edges, given as the sums of their `ends`, stand off planes."""
-    return np.abs(np.einsum("...x,...x->...", normals, 0.5 * ends - points))
+def _chunks(count: int) -> Iterator[slice]:
+    return (slice(low, min(low + CHUNK, count)) for low in range(0, count, CHUNK))
 
 
-def _homes(chart: Chart, patch: Patches) -> Ints:
-    """The patch (gaps, nu, nz) of each cell."""
-    nu, nz = chart.cells
-    size = int((patch.i[:, 1] - patch.i[:, 0]).max()), int((patch.k[:, 1] - patch.k[:, 0]).max())
-    home = np.zeros((chart.gaps, nu // size[0], nz // size[1]), dtype=np.int64)
-    home[patch.gap, patch.i[:, 0] // size[0], patch.k[:, 0] // size[1]] = np.arange(len(patch.gap))
-    return home.repeat(size[0], axis=1).repeat(size[1], axis=2)
+@dataclass(frozen=True, slots=True)
+class _Nodes:
+    """Some nodes of a chart, or its cells by their first nodes."""
+
+    gap: Ints
+    """(n,) like the following"""
+    i: Ints
+    k: Ints
+    cell: Ints
+    """along the gap, of a cell that holds the node"""
+    block: Ints
+    """of that cell"""
+
+    @classmethod
+    def of(cls, proved: Proved, shape: tuple[int, int, int], part: slice) -> "_Nodes":
+        """A slice of the nodes of an array."""
+        nu, nz = proved.chart.cells
+        gap, i, k = np.unravel_index(np.arange(part.start, part.stop), shape)
+        cell = np.minimum(k, nz - 1)
+        return cls(gap, i, k, cell, proved.block[gap, np.minimum(i, nu - 1), cell])
+
+    def images(self, proved: Proved, points: Floats, rows: Ints) -> Images:
+        """Points of some of the nodes' cells, seen from the cells' blocks."""
+        return proved.images(points, self.gap[rows], self.cell[rows])
 
 
-def _crossings(
-    sweep: Sweep, chart: Chart, home: Ints, tangents: Tangents, thick: float
-) -> tuple[Floats, Floats]:
-    """Where the rays cross the surface, (gaps, nu + 1, nz + 1, 3), and the unit normals into the material."""
-    nu, nz = chart.cells
-    shape = (chart.gaps, nu + 1, nz + 1)
-    gap, i, k = (v.reshape(-1) for v in np.indices(shape))
-    block = home[gap, np.minimum(i, nu - 1), np.minimum(k, nz - 1)]
-    start, along = chart.at(gap, i, k, np.zeros(1))
-    lists = tangents.lists
-    tau = np.zeros(len(block))
-    length = np.diff(lists.start)[block]
-
-    def guess(part: slice) -> None:
-        """Where the first of the bites' tangent planes, seen from the tooth, is crossed."""
-        own = block[part]
-        pairs = lists.pairs(own)
-        owner = np.repeat(np.arange(len(own)), length[part])
-        plane = tangents.plane.take(pairs, axis=1)
-        way = start[part] - tangents.middle[own]
-        level, rate = plane[0], np.zeros(len(pairs))
-        for x in range(3):
-            level += plane[1 + x] * way[:, x].take(owner)
-            rate += plane[1 + x] * along[part, x].take(owner)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            root = np.where(rate < 0, -level / rate, -thick)
-        tau[part] = np.maximum.reduceat(root, np.concatenate([[0], np.cumsum(length[part])[:-1]]))
-
-    in_parallel(guess, batches(np.concatenate([[0], np.cumsum(length)]), 1 << 15))
-    np.clip(tau, -thick, thick, out=tau)
-    slope = np.zeros_like(start)
-    left = np.arange(len(block))
+def _settled(sweep: Sweep, proved: Proved, nodes: _Nodes, guess: Floats) -> tuple[Floats, Ints]:
+    """Vertices (n, 3) brought onto the surface, and the bites (n,) that make it there."""
+    vertices, bite = guess.copy(), np.zeros(len(guess), dtype=np.int64)
+    left = np.arange(len(vertices))
     for _ in range(ROUNDS):
+        at = vertices[left]
         found = sweep.deepest(
-            start[left] + tau[left, None] * along[left], block[left], tangents, gradient=True
+            at, nodes.block[left], proved.tangents, gradient=True, images=nodes.images(proved, at, left)
+        )
+        bite[left] = found.bite
+        step = found.depth / np.einsum("nx,nx->n", found.gradient, found.gradient)
+        vertices[left] = at - step[:, None] * found.gradient
+        left = left[np.abs(step) > SETTLED]
+        if not len(left):
+            break
+    return vertices, bite
+
+
+def _crossings(sweep: Sweep, proved: Proved, nodes: _Nodes, thick: float) -> tuple[Floats, Floats]:
+    """Where the rays of nodes cross the surface, (n, 3), and the unit normals into the material."""
+    start, along = proved.chart.at(nodes.gap, nodes.i, nodes.k, np.zeros(1))
+    tau = _first_planes(proved, nodes, (start, along), thick)
+    slope = np.zeros_like(start)
+    left = np.arange(len(start))
+    for _ in range(ROUNDS):
+        at = start[left] + tau[left, None] * along[left]
+        found = sweep.deepest(
+            at, nodes.block[left], proved.tangents, gradient=True, images=nodes.images(proved, at, left)
         )
         slope[left] = found.gradient
         step = found.depth / np.minimum(np.einsum("nx,nx->n", found.gradient, along[left]), -1e-3)
         tau[left] = np.clip(tau[left] - step, -thick, thick)
         left = left[np.abs(step) > SETTLED]
+        if not len(left):
+            break
     slope /= -np.linalg.norm(slope, axis=1, keepdims=True)
-    return (start + tau[:, None] * along).reshape(*shape, 3), slope.reshape(*shape, 3)
+    return start + tau[:, None] * along, slope
+
+
+def _first_planes(proved: Proved, nodes: _Nodes, rays: tuple[Floats, Floats], thick: float) -> Floats:
+    """Ways (n,) along rays to the first of the bites' tangent planes, seen from the tooth."""
+    tangents, lists = proved.tangents, proved.tangents.lists
+    start, along = rays
+    whole = np.arange(len(start))
+    # in the frame of the blocks the rays of all images are those of the template
+    seen = nodes.images(proved, start, whole).points
+    ahead = proved.turned(along, nodes.gap, nodes.cell)
+    length = np.diff(lists.start)[nodes.block]
+    pairs = lists.pairs(nodes.block)
+    owner = np.repeat(whole, length)
+    plane = tangents.plane.take(pairs, axis=1)
+    way = seen - tangents.middle[nodes.block]
+    level, rate = plane[0], np.zeros(len(pairs))
+    for x in range(3):
+        level += plane[1 + x] * way[:, x].take(owner)
+        rate += plane[1 + x] * ahead[:, x].take(owner)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.where(rate < 0, -level / rate, -thick)
+    found = np.maximum.reduceat(root, np.concatenate([[0], np.cumsum(length)[:-1]]))
+    return np.clip(found, -thick, thick)
+
+
+def _off(points: Floats, normals: Floats, ends: Floats) -> Floats:
+    """How far the middles of some edges, given as the sums of their `ends`, stand off planes."""
+    return np.abs(np.einsum("...x,...x->...", normals, 0.5 * ends - points))
 
 
 def _meet(points: Floats, normals: Floats) -> Floats:

@@ -9,7 +9,7 @@ Charts cover the whole ring from below the root to the outside, so nothing else 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,9 +64,13 @@ class Tiling:
         )
         return cls(across=across, along=along)
 
-    def times(self, tiles: float) -> tuple[int, int]:
-        """Cells of a block of some tiles."""
-        return int(tiles * self.across), int(tiles * self.along)
+    def sizes(self, thick: float, *, finest: bool) -> list[tuple[tuple[int, int], float]]:
+        """Cells of blocks from coarse to fine, half a tile or the `finest`, and the shell's thickness."""
+        found = [((int(n * self.across), int(n * self.along)), share * thick) for n, share in TILES.items()]
+        while finest and max(found[-1][0]) > 1:
+            across, along = found[-1][0]
+            found.append((((across + 1) // 2, (along + 1) // 2), found[-1][1]))
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,16 +126,21 @@ class Blocks:
         return np.linalg.norm(self.corners - middle[:, None], axis=2).max(axis=1) > radius
 
 
-def patches(chart: Chart, size: tuple[int, int]) -> Patches:
-    """Patches of `size` cells across and along the gaps, fewer at the ends."""
-    nu, nz = chart.cells
-    first = [np.arange(0, n, cells) for n, cells in zip((nu, nz), size, strict=True)]
-    gap, i, k = (v.reshape(-1) for v in np.meshgrid(np.arange(chart.gaps), *first, indexing="ij"))
-    return Patches(
-        gap,
-        np.stack([i, np.minimum(i + size[0], nu)], axis=1),
-        np.stack([k, np.minimum(k + size[1], nz)], axis=1),
+def patches(cells: int, gap: Ints, k: Ints, size: tuple[int, int]) -> Patches:
+    """Stretches of gaps, `cells` across and from node k (n, 2) to node, in patches of about `size` cells."""
+    whole = Patches(gap, np.tile([0, cells], (len(gap), 1)), k)
+    rows, columns = (
+        max(math.ceil(int(np.ptp(edges, axis=1).max()) / n), 1)
+        for edges, n in zip((whole.i, whole.k), size, strict=True)
     )
+    parts = []
+    for a in range(rows):
+        i = np.minimum(whole.i[:, :1] + [a * size[0], (a + 1) * size[0]], whole.i[:, 1:])
+        for b in range(columns):
+            along = np.minimum(k[:, :1] + [b * size[1], (b + 1) * size[1]], k[:, 1:])
+            some = along[:, 1] > along[:, 0]
+            parts.append(Patches(gap[some], i[some], along[some]))
+    return Patches(*(np.concatenate([getattr(p, name) for p in parts]) for name in Patches.__slots__))
 
 
 def quarters(patch: Patches, size: tuple[int, int]) -> tuple[Patches, Ints]:
@@ -218,21 +227,22 @@ class Held:
     """pairs of block and bite that were evaluated"""
 
 
-def search(sweep: Sweep, chart: Chart, tiling: Tiling, thick: float) -> tuple[Patches, Held]:
-    """The halves of tiles, and for each the bites that can be the deepest in the shell on it.
+def search(
+    sweep: Sweep, chart: Chart, patch: Patches, sizes: Sequence[tuple[tuple[int, int], float]]
+) -> tuple[Patches, Held]:
+    """Ever smaller patches, and for each the bites that can be the deepest in the shell on it.
 
-    Raises IrregularError where a bite may touch what lies behind the shell, or where none reaches it.
+    `sizes` are cells across and along at most, and how thick the shell is taken there. Raises IrregularError
+    where a bite may touch what lies behind the shell, or where none reaches it.
     """
-    tiles, *finer = TILES
-    patch = patches(chart, tiling.times(tiles))
-    block = blocks(chart, patch, TILES[tiles] * thick)
-    held = first_held(sweep, block, sweep.near(*_columns(block)))
+    block = blocks(chart, patch, sizes[0][1])
+    held = first_held(sweep, block, sweep.near(*columns(block)))
     pairs = held.pairs
-    for tiles in finer:
-        patch, parent = quarters(patch, tiling.times(tiles))
-        held = refined(sweep, blocks(chart, patch, TILES[tiles] * thick), parent, held)
+    for size, thick in sizes[1:]:
+        patch, parent = quarters(patch, size)
+        held = refined(sweep, blocks(chart, patch, thick), parent, held)
         pairs += held.pairs
-    _settle(sweep, chart, patch, held, thick)
+    _settle(sweep, chart, patch, held, sizes[-1][1])
     return patch, Held(held.tangents, held.safe, pairs)
 
 
@@ -249,12 +259,12 @@ def _settle(sweep: Sweep, chart: Chart, patch: Patches, held: Held, thick: float
         lists = lists.of(some[parent])
         block, owner = blocks(chart, patch, thick), lists.owner()
         meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
-        lists = lists.where(~_stays_out(sweep, block, owner, lists.bites, meeting))
+        lists = lists.where(~stays_out(sweep, block, owner, lists.bites, meeting))
     if len(lists.bites):
         raise IrregularError("something is cut outside of the gaps")
 
 
-def _columns(block: Blocks) -> tuple[Floats, Floats]:
+def columns(block: Blocks) -> tuple[Floats, Floats]:
     """Middles (n, 3) and radii (n,) of balls that hold the blocks and all that lies behind them."""
     ends = (block.face + block.behind).transpose(2, 0, 1)
     points = np.concatenate([block.corners - block.middle[:, None], ends], axis=1)
@@ -309,7 +319,7 @@ def _judged(sweep: Sweep, block: Blocks, lists: Candidates, safe: Bools, floors:
     keep &= meeting.depth + change > 0
     unsure = np.flatnonzero(~safe)
     safe = safe.copy()
-    safe[unsure] = _stays_out(sweep, block, owner[unsure], lists.bites[unsure], meeting.of(unsure))
+    safe[unsure] = stays_out(sweep, block, owner[unsure], lists.bites[unsure], meeting.of(unsure))
     keep |= ~safe
     some = np.flatnonzero(keep)
     tangents = Tangents(
@@ -324,7 +334,7 @@ def _floors(sweep: Sweep, block: Blocks, lists: Candidates, height: Floats) -> F
     return sweep.floors(block.middle, block.corners, judge, block.radius)
 
 
-def _stays_out(sweep: Sweep, block: Blocks, owner: Ints, bite: Ints, meeting: Meeting) -> Bools:
+def stays_out(sweep: Sweep, block: Blocks, owner: Ints, bite: Ints, meeting: Meeting) -> Bools:
     """Which bites (m,), met at their blocks' middles, touch nothing that lies behind the shell.
 
     At y + t w, y in the shell's back and w the way behind it, a bite's depth is at most tangent(y) +

@@ -34,7 +34,8 @@ def tubes(chart: Chart, made: Skin) -> Surface:
     # flat ends beyond both faces
     low, high = ring[:, :, :1].copy(), ring[:, :, -1:].copy()
     step = chart.z[1] - chart.z[0]
-    low[..., 2], high[..., 2] = chart.z[0] - step, chart.z[-1] + step
+    low[..., 2] = (chart.z[0] - step + chart.lift)[:, None, None]
+    high[..., 2] = (chart.z[-1] + step + chart.lift)[:, None, None]
     vertices = (np.concatenate([low, ring, high], axis=2) - shift) @ rotation
     # no bite made the lid and the ends
     bite = np.pad(made.bite, ((0, 0), (0, 1), (1, 1)), constant_values=-1)
