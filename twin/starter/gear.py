@@ -9,6 +9,7 @@ from twin.errors import InputError
 from twin.inspection.nominal import GearNominal
 from twin.inspection.tolerances import GearSize, gear_tolerance, outside_standard
 from twin.starter.approach import clearance
+from twin.starter.gashes import enough_gashes
 from twin.starter.plan import Draft, highest_speeds, program_text, spindle_speed, toml_number, up, word
 
 HOBS: tuple[tuple[float, float, int], ...] = (
@@ -31,6 +32,10 @@ MARK_SHARE = 0.5
 """Of the helix form tolerance, left to the feed marks."""
 BORE = 0.3
 """Bore over root diameter."""
+ADDENDUM = 1.25
+"""of the hob [modules]"""
+TIP_RADIUS = 0.38
+"""of the hob's teeth, where the pressure angle leaves room [modules] (ISO 53, profile A)"""
 BESIDE = 2.0
 """[mm] beside the blank and above it before the hob comes near"""
 
@@ -70,12 +75,19 @@ def draft_gear(order: GearOrder) -> Draft:
         profile_shift=order.profile_shift,
         accuracy_class=order.accuracy_class,
     )
-    hob = _hob(order)
     beta = math.radians(order.helix_deg)
     pitch = reference_diameter(teeth=order.teeth, module=order.module, helix=beta)
     tip = pitch + 2.0 * order.module * (1.0 + order.profile_shift)
-    root = pitch - 2.0 * order.module * (1.25 - order.profile_shift)
+    root = pitch - 2.0 * order.module * (ADDENDUM - order.profile_shift)
     width = order.width if order.width is not None else 10.0 * order.module
+    size = GearSize(
+        number_of_teeth=order.teeth,
+        reference_diameter=pitch,
+        normal_module=order.module,
+        face_width=width,
+        helix_angle=order.helix_deg,
+    )
+    hob = _hob(order, size, tip)
     bore = order.bore if order.bore is not None else up(BORE * root, 1.0)
     if not 0.0 <= bore < root - order.module:
         raise InputError(
@@ -91,13 +103,6 @@ def draft_gear(order: GearOrder) -> Draft:
     work_rpm, tool_rpm = highest_speeds()
     highest = min(tool_rpm, work_rpm * order.teeth / order.starts)
     speed = spindle_speed(order.cutting_speed, hob.outside_diameter_mm, highest)
-    size = GearSize(
-        number_of_teeth=order.teeth,
-        reference_diameter=pitch,
-        normal_module=order.module,
-        face_width=width,
-        helix_angle=order.helix_deg,
-    )
     feed = order.feed if order.feed is not None else _feed(order, hob, size)
     program = _program(order, root, up(tip + 2.0 * BESIDE, 1.0), (beside, -width - beside), (speed, feed))
     shape = f"β {abs(order.helix_deg):g}° {'right' if beta > 0 else 'left'}" if beta else "spur"
@@ -126,9 +131,22 @@ def _check(order: GearOrder) -> None:
             raise InputError(f"{name} {value:g}", remedy=f"valid: {low:g} to {high:g}")
 
 
-def _hob(order: GearOrder) -> Hob:
-    """The catalogue's hob; right-hand for spur gears, else of the gear's hand, to swivel little."""
+def _hob(order: GearOrder, size: GearSize, tip: float) -> Hob:
+    """The catalogue's hob, with more gashes where the class needs them.
+
+    Right-hand for spur gears, else of the gear's hand, to swivel little; tips as round as 0.38 modules, or as
+    the pressure angle leaves room for.
+    """
     _, diameter, gashes = next(row for row in HOBS if order.module <= row[0])
+    if order.gashes is None:
+        gashes = enough_gashes(
+            size,
+            tip_diameter=tip,
+            pressure_deg=order.pressure_angle_deg,
+            starts=order.starts,
+            accuracy_class=order.accuracy_class,
+            usual=gashes,
+        )
     return Hob(
         normal_module_mm=order.module,
         outside_diameter_mm=order.hob_diameter if order.hob_diameter is not None else diameter,
@@ -136,7 +154,15 @@ def _hob(order: GearOrder) -> Hob:
         gashes=order.gashes if order.gashes is not None else gashes,
         hand="left" if order.helix_deg < 0 else "right",
         pressure_angle_deg=order.pressure_angle_deg,
+        tip_radius_factor=_tip_radius(math.radians(order.pressure_angle_deg)),
     )
+
+
+def _tip_radius(pressure: float) -> float:
+    """Of the hob's teeth [modules]: at most that of one arc from flank to flank, down to hundredths."""
+    half = math.pi / 4.0 - ADDENDUM * math.tan(pressure)
+    whole = half * math.cos(pressure) / (1.0 - math.sin(pressure))
+    return min(TIP_RADIUS, math.floor(100.0 * whole) / 100.0)
 
 
 def _feed(order: GearOrder, hob: Hob, size: GearSize) -> float:
@@ -193,6 +219,7 @@ kind = "hob"
 normal_module_mm = {number(hob.normal_module_mm)}
 pressure_angle_deg = {number(hob.pressure_angle_deg)}
 outside_diameter_mm = {number(hob.outside_diameter_mm)}
+tip_radius_factor = {number(hob.tip_radius_factor)}
 starts = {hob.starts}
 gashes = {hob.gashes}
 hand = "{hob.hand}"

@@ -1,16 +1,19 @@
 """Drafts against the closed forms of geometry.md and against the controller that reads them."""
 
 import math
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.dry_run import dry_run
 from controller.language.source import load_program
+from twin.advice.dry import advised_run
+from twin.advice.gear_law import generating_flat, roll_angle
 from twin.errors import InputError
-from twin.inspection.tolerances import GearSize, gear_tolerance
+from twin.inspection.tolerances import GearSize, across_flats_limits, gear_tolerance
 from twin.job import read_job
 from twin.presets import cutters_of, settings_of
 from twin.starter.approach import clearance
@@ -28,8 +31,11 @@ def written(draft, folder):
 
 
 def checked(job):
-    made = settings_of(job, cutters_of(job))
-    return dry_run(load_program(job.program), made.parameters, made.offsets, made.signals)
+    """The controller's report, and what it, the job and the program together have to say."""
+    cutters = cutters_of(job)
+    settings = settings_of(job, cutters)
+    report, advice = advised_run(job, cutters, settings, load_program(job.program))
+    return report, [*report.alarms, *report.warnings, *advice]
 
 
 @pytest.mark.parametrize(
@@ -81,14 +87,34 @@ def test_no_point_of_the_blank_is_inside_a_clear_hob(tip, outside, depth, swivel
     module=st.sampled_from([0.5, 1.0, 1.75, 2.0, 3.0, 5.0]),
     teeth=st.integers(12, 80),
     helix=st.sampled_from([-30.0, -12.5, 0.0, 8.0, 25.0]),
-    starts=st.integers(1, 2),
+    shift=st.sampled_from([-0.3, 0.0, 0.5]),
+    starts=st.integers(1, 3),
     grade=st.integers(5, 10),
+    pressure=st.sampled_from([14.5, 20.0, 20.0, 25.0]),
 )
-def test_gear_drafts_check_clean(module, teeth, helix, starts, grade, tmp_path_factory):
-    order = GearOrder(module=module, teeth=teeth, helix_deg=helix, starts=starts, accuracy_class=grade)
-    job = written(draft_gear(order), tmp_path_factory.mktemp("gear"))
-    found = checked(job)
-    assert (found.alarms, found.warnings) == ((), ())
+def test_gear_drafts_check_clean(module, teeth, helix, shift, starts, grade, pressure, tmp_path_factory):
+    order = GearOrder(
+        module=module,
+        teeth=teeth,
+        helix_deg=helix,
+        profile_shift=shift,
+        starts=starts,
+        accuracy_class=grade,
+        pressure_angle_deg=pressure,
+    )
+    try:
+        draft = draft_gear(order)
+    except InputError as refused:
+        assert "usual are up to 24 (valid: " in str(refused)
+        valid = dict(re.findall(r"--(starts|class) (\d+)", str(refused)))
+        assert valid
+        changes = {"starts": "starts", "class": "accuracy_class"}
+        for name, value in valid.items():
+            draft_gear(replace(order, **{changes[name]: int(value)}))
+        return
+    job = written(draft, tmp_path_factory.mktemp("gear"))
+    found, said = checked(job)
+    assert said == []
     # ends where it retracts: beside the blank, clear of it
     assert found.absolute["Z"] < -10.0 * module - 1.9
     assert found.absolute["X"] > job.work.diameter_mm + 3.9
@@ -98,7 +124,7 @@ def test_gear_drafts_check_clean(module, teeth, helix, starts, grade, tmp_path_f
     )
     beta = math.radians(helix)
     hob = job.tools[0]
-    mark = (feed / math.cos(beta)) ** 2 * math.sin(math.radians(20.0)) / (4.0 * hob.pitch_diameter) * 1e3
+    mark = (feed / math.cos(beta)) ** 2 * math.sin(math.radians(pressure)) / (4.0 * hob.pitch_diameter) * 1e3
     size = GearSize(
         number_of_teeth=teeth,
         reference_diameter=teeth * module / math.cos(beta),
@@ -107,16 +133,45 @@ def test_gear_drafts_check_clean(module, teeth, helix, starts, grade, tmp_path_f
         helix_angle=helix,
     )
     assert mark <= 0.5 * gear_tolerance("helix_form", size, grade) + 1e-9
+    # and so do the flats of its gashes, at the tip
+    transverse = math.atan(math.tan(math.radians(pressure)) / math.cos(beta))
+    base = size.reference_diameter / 2.0 * math.cos(transverse)
+    flat = 1e3 * generating_flat(
+        base_radius=base,
+        roll=roll_angle(radius=job.work.diameter_mm / 2.0, base_radius=base),
+        starts=starts,
+        gashes=hob.gashes,
+        teeth=teeth,
+    )
+    assert flat <= 0.5 * gear_tolerance("profile_form", size, grade) + 1e-9
 
 
 @few
 @given(sides=st.integers(3, 12), across=st.floats(5.0, 40.0), length=st.floats(2.0, 30.0))
 def test_polygon_drafts_check_clean(sides, across, length, tmp_path_factory):
     order = PolygonOrder(sides=sides, across_flats=round(across, 2), length=round(length, 1))
-    job = written(draft_polygon(order), tmp_path_factory.mktemp("polygon"))
-    found = checked(job)
-    assert found.alarms == ()
+    try:
+        draft = draft_polygon(order)
+    except InputError as refused:
+        # few and odd sides: at a ratio below 2 faces are more convex
+        assert sides in (3, 5)
+        widest = re.search(r"--across-flats up to (\d+)", str(refused)).group(1)
+        draft_polygon(replace(order, across_flats=float(widest)))
+        return
+    job = written(draft, tmp_path_factory.mktemp("polygon"))
+    _, said = checked(job)
+    assert said == []
     assert job.work.diameter_mm > order.across_flats
+    # convex, and within half of h13 on both sides: the path of one edge, point by point (geometry.md 3)
+    head, pitch = job.tools[0], math.pi / sides
+    theta = np.linspace(-math.pi / 2, math.pi / 2, 200_001)
+    ratio = sides / head.inserts
+    radius = head.tip_radius_mm
+    path = (order.across_flats / 2 + radius) * np.exp(-1j * theta) - radius * np.exp(1j * (ratio - 1) * theta)
+    face = path[np.abs(np.angle(path)) <= pitch].real
+    tolerance = np.subtract(*across_flats_limits(order.across_flats, "h13"))
+    assert face.argmax() == pytest.approx(len(face) / 2, abs=1)
+    assert 0.0 <= 2.0 * np.ptp(face) <= 0.5 * abs(tolerance) + 1e-6
 
 
 @pytest.mark.parametrize(
@@ -135,6 +190,25 @@ def test_gears_that_cannot_be_drafted(order, said):
     assert said in str(refused.value)
 
 
-def test_inserts_that_do_not_divide_the_sides():
-    with pytest.raises(InputError, match=r"4 inserts cannot share 6 sides evenly \(valid: 1, 2, 3, 6\)"):
-        draft_polygon(PolygonOrder(sides=6, across_flats=17.0, inserts=4))
+@pytest.mark.parametrize("inserts", [1, 2, 4])
+def test_any_number_of_inserts_cuts_all_sides(inserts, tmp_path):
+    """P inserts at Q / P: as ordered, even where faces are concave, which the check says."""
+    job = written(draft_polygon(PolygonOrder(sides=6, across_flats=17.0, inserts=inserts)), tmp_path)
+    _, said = checked(job)
+    assert [one.number for one in said] == ([] if inserts == 4 else ["HT9202"])
+    assert f"G51.2 P{inserts} Q6" in job.program.read_text()
+
+
+@pytest.mark.parametrize(("pressure", "factor"), [(14.5, 0.38), (20.0, 0.38), (25.0, 0.31), (30.0, 0.11)])
+def test_tips_are_as_round_as_there_is_room(pressure, factor, tmp_path):
+    """One arc from flank to flank: (π/4 − 1.25 tan α) cos α / (1 − sin α), 0.318 at 25°, 0.110 at 30°."""
+    job = written(draft_gear(GearOrder(module=2.0, teeth=20, pressure_angle_deg=pressure)), tmp_path)
+    assert job.tools[0].tip_radius_factor == pytest.approx(factor)
+
+
+def test_a_polygon_that_no_head_turns():
+    with pytest.raises(InputError) as refused:
+        draft_polygon(PolygonOrder(sides=3, across_flats=24.0))
+    assert "no usual head turns 3 faces 24 mm across flats within h13 (valid: --across-flats up to" in str(
+        refused.value
+    )
