@@ -192,10 +192,13 @@ def _link(model: mujoco.MjModel, body: int, joints: tuple[str, ...]) -> Link:
     )
 
 
-def cutter_motion(kinematics: Kinematics, time_s: Floats, actual: Floats) -> CutterMotion:
+def cutter_motion(
+    kinematics: Kinematics, time_s: Floats, actual: Floats, deflection: Floats | None = None
+) -> CutterMotion:
     """The tool's motion in the non-turning work frame.
 
-    `time_s` (n,), `actual` (n, axes) recorded axes [mm | deg]. Raises ValueError on other shapes.
+    `time_s` (n,), `actual` (n, axes) recorded axes [mm | deg], `deflection` (n, 3) of the tool against the
+    work in the work frame [mm]. Raises ValueError on other shapes.
     """
     if actual.ndim != 2 or actual.shape != (len(time_s), kinematics.axes):
         raise ValueError(f"actual: expected ({len(time_s)}, {kinematics.axes}), got {actual.shape}")
@@ -207,11 +210,12 @@ def cutter_motion(kinematics: Kinematics, time_s: Floats, actual: Floats) -> Cut
     tool_angle = np.radians(actual[:, kinematics.tool.spindle.column])
     basis = tool.T @ work
     arbor = kinematics.arbor
+    centre = (centre - origin) @ work + _spun(tool_angle, arbor.translation) @ basis
     return CutterMotion(
         time_s=time_s,
         work_angle=np.radians(actual[:, kinematics.work.spindle.column]),
         tool_angle=tool_angle,
-        centre=(centre - origin) @ work + _spun(tool_angle, arbor.translation) @ basis,
+        centre=centre if deflection is None else centre + deflection,
         basis=basis,
         lean=_spun(tool_angle, arbor.rotation[:, 2])[:, :2] if arbor.rotation[2, 2] != 1.0 else None,
         mount=kinematics.mount,

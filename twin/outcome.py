@@ -9,6 +9,7 @@ from twin.cutting.cut import CutResult
 from twin.errors import ExitCode
 from twin.inspection.result import Inspection, Verdict
 from twin.job.schema import Job
+from twin.load.rounds import LoadedRun
 from twin.regression.judge import Miss
 from twin.session import Session
 from twin.setup import Ready
@@ -42,6 +43,8 @@ class Outcome:
     inspection: Inspection
     chips: Chips | None
     """where they were asked for"""
+    loaded: LoadedRun | None
+    """the cutting forces, where the job asks for them"""
     times: dict[str, float]
     """stage -> wall time [s]"""
     advice: tuple[Advice, ...] = ()

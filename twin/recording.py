@@ -24,6 +24,19 @@ class BlockRef:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RecordedLoad:
+    """What the cut did to the machine, sample by sample."""
+
+    axes: Floats
+    """(n, axes) mean force on each axis during the tick [N, N m], positive in its positive sense"""
+    power_w: Floats
+    """(n,)"""
+    deflection_um: Floats
+    """(n, 3) how far the mounts of tool and work give way, as motion of the tool in the work frame: X towards
+    the tool, Z along the work axis"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Recording:
     """Axes over time in machine terms, and the tool in the part's frame.
 
@@ -60,11 +73,14 @@ class Recording:
     """(n, 3) unit vector in the turning part frame, right-hand positive sense of rotation"""
     tool_zero: Floats
     """(n, 3) unit vector in the turning part frame, direction of tool angle 0"""
+    load: RecordedLoad | None = None
+    """of a run with cutting forces; `tool_centre_mm` is where they have pushed the tool"""
 
     def save(self, path: Path) -> None:
         """Write `recording.npz`: per axis letter `setpoint_X`, `actual_X`, …; the rest under its own name.
 
         `sync_order`, `sync_amplitude_arcsec`: lines of the error's spectrum, orders per turn of the work.
+        With cutting forces `load_X`, …, `cutting_power_w` and `deflection_um` too.
         """
         columns: dict[str, NDArray] = {}
         for k, letter in enumerate(self.axes):
@@ -90,4 +106,7 @@ class Recording:
             "tool_axis": self.tool_axis,
             "tool_zero": self.tool_zero,
         }
+        if self.load is not None:
+            columns |= {f"load_{letter}": self.load.axes[:, k] for k, letter in enumerate(self.axes)}
+            columns |= {"cutting_power_w": self.load.power_w, "deflection_um": self.load.deflection_um}
         save_arrays(path, columns)

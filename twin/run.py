@@ -24,6 +24,9 @@ from twin.inspection.deviation import deviation_map
 from twin.inspection.inspection import inspect
 from twin.inspection.sheet import to_json
 from twin.job.schema import Job
+from twin.load.figures import load_figures
+from twin.load.forces import CuttingLoad
+from twin.load.rounds import run_under_load
 from twin.outcome import Options, Outcome
 from twin.output.arrays import save_arrays
 from twin.output.folder import require_replaceable, result_folder
@@ -33,7 +36,7 @@ from twin.presets import cutters_of, settings_of
 from twin.progress import Reporter, Silent
 from twin.regression.judge import misses
 from twin.report.page import write_report
-from twin.session import CHUNK, run_program
+from twin.session import CHUNK, Session, run_program
 from twin.setup import make_ready, require_analogue
 from twin.summary import report_data
 
@@ -86,14 +89,22 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     tell.stage(
         f"running {cycle:.0f} s of machine time (recording up to {samples * BYTES_PER_SAMPLE / 1e6:.0f} MB)"
     )
-    with watch.measure("machine"):
-        session = run_program(
+
+    def run(load: CuttingLoad | None) -> Session:
+        return run_program(
             program,
             settings,
             ready,
             ideal=options.ideal,
+            load=load,
             progress=lambda seconds: tell.share(seconds / max(cycle, period)),
         )
+
+    loaded = None
+    with watch.measure("machine"):
+        if job.physics.cutting_load:
+            loaded = run_under_load(job, ready, run, tell=tell.stage, progress=tell.share)
+        session = loaded.session if loaded else run(None)
     tell.stage("cutting")
     with watch.measure("cutting"):
         result = cut(
@@ -123,6 +134,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         cut=result,
         inspection=inspection,
         chips=taken,
+        loaded=loaded,
         times=watch.stages,
         advice=advice,
         missed=misses(
@@ -162,7 +174,7 @@ def _write(folder: Path, outcome: Outcome, deviation: NDArray[np.float64], watch
             one.result()
         if outcome.chips is not None:
             save_arrays(folder / "chips.npz", outcome.chips.columns())
-        _json(folder / "inspection.json", to_json(outcome.inspection))
+        _json(folder / "inspection.json", figures(outcome))
         _json(
             folder / "alarms.json",
             {
@@ -190,6 +202,11 @@ def _write(folder: Path, outcome: Outcome, deviation: NDArray[np.float64], watch
     _json(folder / "provenance.json", origin)
     with watch.measure("report"):
         write_report(folder / "report.html", report_data(outcome, deviation, origin))
+
+
+def figures(outcome: Outcome) -> dict[str, object]:
+    """What inspection.json holds: what was measured on the part, and what cut it."""
+    return {**to_json(outcome.inspection), **load_figures(outcome.loaded)}
 
 
 def _json(path: Path, value: object) -> None:

@@ -16,6 +16,7 @@ from twin.cutting.motion import CutterMotion
 from twin.errors import PartError
 from twin.faults.drives import misread
 from twin.kinematics import cutter_motion, part_frame
+from twin.load.forces import CuttingLoad
 from twin.machine import Guarded, IdealMachine, MujocoMachine
 from twin.presets import ControllerSettings
 from twin.recording import BlockRef, Recording
@@ -28,6 +29,7 @@ CHUNK = 4096
 """[ticks] proposed at once where nobody watches"""
 SETTLE_S = 0.5
 """[s] of a dwell that are run before the rest is passed over"""
+MM_PER_UM = 1e-3
 LONGEST_RUN_S = 6 * 3600.0
 """[s] of recorded motion; more would not fit the memory of a small machine"""
 
@@ -96,10 +98,11 @@ def run_program(
     ready: Ready,
     *,
     ideal: bool,
+    load: CuttingLoad | None = None,
     progress: Callable[[float], None] = lambda _seconds: None,
 ) -> Session:
     """Run a program on the machine as made ready, or on one whose axes follow their setpoints exactly; it
-    stops where its bodies collide."""
+    stops where its bodies collide. `load`: what the cut does to axes and mounts."""
     controller = Controller(
         program,
         parameters=settings.parameters,
@@ -116,7 +119,7 @@ def run_program(
     else:
         machine = MujocoMachine(misread(ready.driven, settings.encoders))
     guarded = Guarded(machine, ready.tools[0].assembly)
-    return record(controller, guarded, ready, progress=progress)
+    return record(controller, guarded, ready, load=load, progress=progress)
 
 
 def record(
@@ -124,6 +127,7 @@ def record(
     machine: Machine,
     ready: Ready,
     *,
+    load: CuttingLoad | None = None,
     progress: Callable[[float], None] = lambda _seconds: None,
 ) -> Session:
     """Run the program to its end or its first alarm. Raises PartError for a run beyond LONGEST_RUN_S."""
@@ -140,7 +144,7 @@ def record(
         chunk = controller.propose(min(CHUNK, settle) if idle > 4 * settle else CHUNK)
         if chunk.ticks == 0:
             break
-        feedback = machine.advance(chunk)
+        feedback = machine.advance(chunk, load)
         tapes.append(_Tape.of(chunk, feedback, controller.tick_s))
         controller.commit(feedback)
         recorded += feedback.ticks
@@ -150,7 +154,7 @@ def record(
                 remedy="check the feed; run a part of the program",
             )
         progress(chunk.first_tick * controller.tick_s)
-    recording, motions = _recording(controller, ready, _Tape.joined(tapes, len(controller.axes)))
+    recording, motions = _recording(controller, ready, _Tape.joined(tapes, len(controller.axes)), load)
     return Session(
         recording=recording,
         motions=motions,
@@ -162,14 +166,22 @@ def record(
 
 
 def _recording(
-    controller: Controller, ready: Ready, tape: _Tape
+    controller: Controller, ready: Ready, tape: _Tape, load: CuttingLoad | None
 ) -> tuple[Recording, tuple[tuple[Cutter, CutterMotion], ...]]:
     """The recording with the tool in the part frame, and each tool's stretch of motion."""
     n = len(tape.time)
     centre, axis, zero = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     motions: list[tuple[Cutter, CutterMotion]] = []
+    pushed = load.recorded(np.rint(tape.time / controller.tick_s).astype(np.int64) - 1) if load else None
+    deflection = None if pushed is None else pushed.deflection_um * MM_PER_UM
     for first, last, mounted, cuts in _stretches(ready, tape.tool):
-        motion = cutter_motion(mounted.kinematics, tape.time[first:last], tape.actual[first:last])
+        rows = slice(first, last)
+        motion = cutter_motion(
+            mounted.kinematics,
+            tape.time[rows],
+            tape.actual[rows],
+            None if deflection is None else deflection[rows],
+        )
         centre[first:last], axis[first:last], zero[first:last] = part_frame(motion)
         if cuts and last - first > 1:
             motions.append((mounted.cutter, motion))
@@ -194,6 +206,7 @@ def _recording(
         tool_centre_mm=centre,
         tool_axis=axis,
         tool_zero=zero,
+        load=pushed,
     )
     return recording, tuple(motions)
 

@@ -13,6 +13,7 @@ from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutting.chips import Chips
 from twin.inspection.result import GearResult, Inspection, PolygonResult
+from twin.load.figures import load_rows, load_words
 from twin.outcome import Outcome
 from twin.recording import Recording
 from twin.regression.judge import table
@@ -34,6 +35,12 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
         recording=outcome.session.recording,
         rotary_axes=_rotary(outcome),
         sync_error_arcsec=_sync_error(outcome.session.recording),
+        load=tuple(
+            Row(label=label, value=value)
+            for label, value in load_rows(
+                outcome.loaded, outcome.session.recording.axes[outcome.ready.tool_column]
+            )
+        ),
         messages=messages(outcome),
         part=Part(
             vertices=remains.vertices,
@@ -75,6 +82,8 @@ def lines(outcome: Outcome) -> list[str]:
     said += [f"note: {note}" for note in outcome.cut.notes]
     if outcome.chips is not None:
         said.append(f"  {chip_words(outcome.chips)}")
+    if outcome.loaded is not None:
+        said.append(f"  cutting forces: {load_words(outcome.loaded)}")
     return said + part_lines(outcome.inspection, messages(outcome)) + expected_lines(outcome)
 
 
@@ -213,6 +222,8 @@ def _job_rows(outcome: Outcome) -> list[Row]:
     )
     if outcome.chips is not None:
         rows.append(Row(label="Chips", value=chip_words(outcome.chips)))
+    if outcome.loaded is not None:
+        rows.append(Row(label="Cutting forces", value=load_words(outcome.loaded)))
     return rows
 
 

@@ -47,6 +47,7 @@ _CLASS_OF = {
     "HT9013": AlarmClass.SERVO,
     "HT9030": AlarmClass.SERVO,
     "HT9031": AlarmClass.SERVO,
+    "HT9040": AlarmClass.SERVO,
     "PS": AlarmClass.PROGRAM,
     "HT": AlarmClass.PROGRAM,
     "OT": AlarmClass.OVERTRAVEL,
@@ -147,6 +148,7 @@ HT9016 | TOO MANY PASSES IN A CYCLE | a larger depth of cut
 HT9020 | THREAD TOO FAST FOR THE AXES | a lower spindle speed, or a smaller lead
 HT9030 | COLLISION | a path on which nothing but the cutter touches the work
 HT9031 | TOUCH PROBE CRASH | a path on which the stylus meets a reference band alone, and stops in time
+HT9040 | UNSTABLE CUT | less feed or depth, another speed, or stiffer mounts
 """
 
 _WARNINGS = """

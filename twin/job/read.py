@@ -31,6 +31,7 @@ from twin.job.schema import (
     Tool,
     WorkTable,
 )
+from twin.load.material import Physics, material_of
 from twin.probing.band import steps_of
 from twin.probing.probe import Probe
 
@@ -54,6 +55,7 @@ TABLES = (
     "inspection",
     "faults",
     "probe",
+    "physics",
     "events",
     "expect",
 )
@@ -128,6 +130,7 @@ class _Reader:
             inspection=self._table(InspectionTable, ("inspection",)),
             faults=self._faults(tools),
             probe=self._probe(work, tools),
+            physics=self._physics(work, tools),
             events=self._events(),
             expect=self._expect(),
         )
@@ -246,6 +249,22 @@ class _Reader:
                 "overtravel_mm above trigger_force_n / stiffness_n_per_mm",
             )
         return probe
+
+    def _physics(self, work: WorkTable, tools: Mapping[int, Tool | GapWheel]) -> Physics:
+        physics = self._table(Physics, ("physics",))
+        if not physics.cutting_load:
+            return physics
+        try:
+            material_of(work.material, physics)
+        except InputError as cause:
+            self._fail(("work", "material"), cause.text, cause.remedy.removeprefix("valid: "))
+        if any(isinstance(tool, DiscWheel | GapWheel) for tool in tools.values()):
+            self._fail(
+                ("physics", "cutting_load"),
+                "forces of a grinding wheel are not modelled",
+                "hob, polygon_head",
+            )
+        return physics
 
     def _program(self) -> Path:
         raw = self._raw(("program",))

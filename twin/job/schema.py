@@ -17,6 +17,7 @@ from twin.grinding.precut import PrecutGear
 from twin.inspection.nominal import Nominal
 from twin.job.expect import Expectation
 from twin.job.locate import line_of
+from twin.load.material import Physics
 from twin.probing.probe import Probe
 
 MODELS = Path(models.__file__).parent
@@ -140,6 +141,7 @@ class Job:
     faults: Faults = field(default_factory=Faults)
     probe: Probe | None = None
     """the touch probe, where the machine has one"""
+    physics: Physics = field(default_factory=Physics)
     events: tuple[EventTable, ...] = ()
     expect: tuple[Expectation, ...] = ()
     """what a run must come to"""

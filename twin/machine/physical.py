@@ -17,6 +17,7 @@ from twin.machine.encoder import encoder
 from twin.machine.following import follow, require_chunk
 from twin.machine.induction import Induction, steepest
 from twin.machine.loops import Loops
+from twin.machine.pressing import Pressing
 from twin.machine.servo import Gains, Servo, tune
 from twin.machine.stability import require_stable
 from twin.machine.stylus import Stylus
@@ -97,7 +98,8 @@ class MujocoMachine:
         """Move along the chunk; stop early at an alarm, or where its watch is fulfilled or times out.
 
         `load(first_tick, ticks)` gives (ticks, axes) forces on the axes in system order [N, N m], positive
-        in the axis's positive sense. Raises MachineError where the physics breaks down.
+        in the axis's positive sense; a `PhasedLoad` those of its spindle's angle. Raises MachineError
+        where the physics breaks down.
         """
         require_chunk(chunk, len(self._axes), self._tick)
         watch = self._watcher.begin(chunk.watch)
@@ -106,8 +108,8 @@ class MujocoMachine:
         else:
             require_probe(chunk, None)
         limit = chunk.ticks if watch is None else min(chunk.ticks, self._watcher.remaining)
-        forces = None if load is None or limit == 0 else self._forces(load, limit)
-        run = self._run(chunk, limit, watch, forces)
+        pressing = None if load is None or limit == 0 else Pressing(load, self._tick, limit, len(self._axes))
+        run = self._run(chunk, limit, watch, pressing)
         ticks = len(run.motor)
         if not np.isfinite(run.motor).all() or any(w.number for w in self.data.warning):
             raise MachineError(
@@ -119,7 +121,7 @@ class MujocoMachine:
         return Feedback(
             ticks=ticks,
             setpoint=run.setpoint,
-            actual=self._load_side(run.motor, forces) / self._units,
+            actual=self._load_side(run.motor, np.array(pressing.felt) if pressing else None) / self._units,
             measured=run.measured / self._units,
             latch=None if run.latch is None else run.latch / self._units,
             alarms=self._alarms(),
@@ -130,15 +132,7 @@ class MujocoMachine:
         """Let `ticks` pass in which nothing moves: settled drives hold their axes where they are."""
         self._tick += ticks
 
-    def _forces(self, load: Load, ticks: int) -> Floats:
-        forces = load(self._tick, ticks)
-        if forces.shape != (ticks, len(self._axes)):
-            raise ValueError(f"load: expected ({ticks}, {len(self._axes)}), got {forces.shape}")
-        if not np.isfinite(forces).all():
-            raise ValueError(f"load: not finite between ticks {self._tick} and {self._tick + ticks}")
-        return forces
-
-    def _run(self, chunk: Chunk, limit: int, watch: Watch | None, forces: Floats | None) -> _Stretch:
+    def _run(self, chunk: Chunk, limit: int, watch: Watch | None, pressing: Pressing | None) -> _Stretch:
         """Step through the chunk, at most `limit` ticks, to where it has to end.
 
         Plain floats in one loop: on arrays this short numpy would cost more than the physics.
@@ -171,8 +165,9 @@ class MujocoMachine:
                 ctrl[motor] = servo.force(target[axis], m[axis])
             for axis, motor, dof, induction in inductions:
                 ctrl[motor] = induction.force(target[axis], float(qvel[dof]))
-            if forces is not None:
-                applied[dofs] = forces[k]
+            if pressing is not None:
+                spindle = axes[pressing.spindle]
+                applied[dofs] = pressing.feel(k, float(qpos[spindle.qpos]), float(qvel[spindle.dof]))
             if stylus is not None:
                 stylus.prepare(k, data)
             mujoco.mj_step(model, data, substeps)
@@ -222,7 +217,7 @@ class MujocoMachine:
     def _load_side(self, motor: Floats, forces: Floats | None) -> Floats:
         """(ticks, axes) positions of the load behind the motors' [m | rad]."""
         columns = [
-            axis.backlash.follow(motor[:, k], None if forces is None else forces[: len(motor), k])
+            axis.backlash.follow(motor[:, k], None if forces is None else forces[:, k])
             for k, axis in enumerate(self._axes)
         ]
         return np.column_stack(columns)

@@ -136,6 +136,9 @@ class ReportData:
     sync_error_arcsec: Floats | None = None
     """(n,) of the work against the tool, one a sample of the recording, NaN out of sync"""
 
+    load: tuple[Row, ...] = ()
+    """the cutting forces in figures; their course stands in the recording"""
+
     @property
     def solid_part(self) -> Part | None:
         """The part, where it has a face to show."""

@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from twin.report.data import ReportData
 from twin.report.sections.flanks import flanks_section
+from twin.report.sections.load import load_section
 from twin.report.sections.maps import maps_section
 from twin.report.sections.measured import measured_section
 from twin.report.sections.messages import messages_section
@@ -32,6 +33,7 @@ SECTIONS: tuple[Builder, ...] = (
     polygon_section,
     process_section,
     sync_section,
+    load_section,
     origin_section,
 )
 """in the order in which they stand within their tabs; they are built beside one another"""

@@ -1,0 +1,58 @@
+"""A short polygon job, run under its own forces."""
+
+from pathlib import Path
+
+from controller.language.source import parse_program
+from twin.job import read_job
+from twin.load.rounds import LoadedRun, run_under_load
+from twin.presets import cutters_of, settings_of
+from twin.session import Session, run_program
+from twin.setup import Ready, make_ready
+
+JOB = """
+[machine]
+model = "hobbing_lathe"
+[work]
+diameter_mm = 20.0
+length_mm = 2.0
+clamping = "chuck"
+material = "{material}"
+[tool]
+kind = "{tool}"
+{size}
+[program]
+file = "program.nc"
+[physics]
+{physics}
+"""
+HEAD = "inserts = 3\ntip_radius_mm = 40.0\nedge_width_mm = 2.0"
+PROGRAM = """O1
+G54 G00 X26. Z-1.
+G51.2 P3 Q6
+S300
+G99 G01 X{x} F1.
+G01 X26. F2.
+S0
+G50.2
+M30
+"""
+
+
+class Polygon:
+    """The job, made ready."""
+
+    def __init__(self, folder: Path, *, physics: str, x: float = 18.0, material: str = "16MnCr5") -> None:
+        (folder / "program.nc").write_text(PROGRAM.format(x=x), encoding="utf-8")
+        text = JOB.format(material=material, tool="polygon_head", size=HEAD, physics=physics)
+        (folder / "job.toml").write_text(text, encoding="utf-8")
+        self.job = read_job(folder)
+        cutters = cutters_of(self.job)
+        self.settings = settings_of(self.job, cutters)
+        self.ready: Ready = make_ready(self.job, cutters, lowest_z_mm=-1.0)
+        self.program = parse_program(PROGRAM.format(x=x), file="program.nc")
+
+    def run(self, load=None, *, ideal: bool = True) -> Session:
+        return run_program(self.program, self.settings, self.ready, ideal=ideal, load=load)
+
+    def loaded(self, *, ideal: bool = True) -> LoadedRun:
+        return run_under_load(self.job, self.ready, lambda load: self.run(load, ideal=ideal))

@@ -1,0 +1,1 @@
+"""Cutting forces: from the metal that each tooth takes away to forces on the axes, back into the motion."""

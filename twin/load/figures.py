@@ -1,0 +1,68 @@
+"""A loaded run in figures, words and rows."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.load.rounds import LoadedRun
+
+Floats = NDArray[np.float64]
+
+
+def load_figures(loaded: LoadedRun | None) -> dict[str, object]:
+    """`cutting_load` of inspection.json; nothing where no forces were asked for."""
+    if loaded is None:
+        return {}
+    recording = loaded.session.recording
+    load = recording.load
+    forces = {
+        f"largest_{letter}": float(np.abs(load.axes[:, k]).max(initial=0.0)) if load else 0.0
+        for k, letter in enumerate(recording.axes)
+    }
+    return {
+        "cutting_load": {
+            "settled": loaded.settled,
+            "rounds": loaded.rounds,
+            "moved_um": loaded.moved_um[-1] if loaded.moved_um else 0.0,
+            "frequency_hz": loaded.frequency_hz,
+            "k_c11": loaded.material.k_c11,
+            "m_c": loaded.material.m_c,
+            "removed_mm3": loaded.removed_mm3,
+            "energy_j": loaded.energy_j,
+            "mean_power_w": loaded.mean_power_w,
+            "largest_power_w": float(loaded.load.power_w.max(initial=0.0)),
+            "largest_deflection_um": float(np.linalg.norm(load.deflection_um, axis=1).max(initial=0.0))
+            if load
+            else 0.0,
+            **forces,
+        }
+    }
+
+
+def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
+    """Figures and their names for the head of a sheet; `tool` is the letter of the tool spindle."""
+    figures = load_figures(loaded).get("cutting_load")
+    if loaded is None or not isinstance(figures, dict):
+        return []
+    frequency = "" if loaded.frequency_hz is None else f", at {loaded.frequency_hz:.4g} Hz"
+    return [
+        ("Material", f"k_{{c1.1}} {loaded.material.k_c11:g} N/mm², m_{{c}} {loaded.material.m_c:g}"),
+        ("Energy", f"{figures['energy_j'] / 1e3:.3g} kJ for {figures['removed_mm3']:.4g} mm³"),
+        ("Mean power", f"{figures['mean_power_w']:.3g} W"),
+        ("Largest", f"{figures['largest_power_w']:.3g} W, {figures[f'largest_{tool}']:.3g} N m at the tool"),
+        ("Give", f"up to {figures['largest_deflection_um']:.3g} µm"),
+        ("Rounds", f"{loaded.rounds}, the last moved {figures['moved_um']:.2g} µm{frequency}"),
+    ]
+
+
+def load_words(loaded: LoadedRun) -> str:
+    """The loaded run in one line."""
+    figures = load_figures(loaded)["cutting_load"]
+    if not isinstance(figures, dict) or not figures["removed_mm3"]:
+        return "no metal removed"
+    state = "settled" if loaded.settled else "not settled"
+    return (
+        f"{state} after {loaded.rounds} rounds; {figures['removed_mm3']:.1f} mm³ for "
+        f"{figures['energy_j'] / 1e3:.3g} kJ; power while cutting {figures['mean_power_w']:.3g} W, at most "
+        f"{figures['largest_power_w']:.3g} W; mounts give way by up to "
+        f"{figures['largest_deflection_um']:.3g} µm (rays {loaded.resolution_mm:.2g} mm apart)"
+    )

@@ -1,0 +1,292 @@
+"""The metal that edges take away, piece by piece: how much, when, where, how thick, and which way they go.
+
+The stock is a brush of rays from the work axis outwards, each as long as the metal that stands on it. Edges
+come from outside: a pass cuts a ray off where its depth along it is zero. Rays see all of a chip's area, and
+its thickness exactly, however thin it is. Metal that hangs over an undercut goes with what holds it up.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.blank import Blank
+from twin.cutting.chips import SIMPSON
+from twin.cutting.field import DepthField
+from twin.cutting.motion import CutterMotion
+from twin.cutting.pairs import batches, in_parallel
+from twin.cutting.passes import REACH
+from twin.errors import InputError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Tools = tuple[tuple[Cutter, CutterMotion], ...]
+
+RAYS_PER_PITCH = 12.0
+RAYS = 60_000
+"""that a count has at most where the job names no resolution; it may have ten times as many"""
+PASSES = 24
+"""looked at together, at most"""
+FAR = 1e4
+"""[mm] longer than any ray"""
+THINNEST = 1e-7
+"""[mm] of metal that counts as some"""
+STEPS = 20
+"""of false position towards the end of a ray, at most"""
+CLOSE = 1e-5
+"""[mm] of depth at which the end of a ray counts as found"""
+SLACK = 0.02
+"""[mm] added to the way of the stock until it meets an edge"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Removal:
+    """Pieces of the removed metal, in the order of time by stretches. Frame: that of the work, which does not
+    turn."""
+
+    chip: Ints
+    """(n, 3) the chip that it belongs to: stretch with one tool, pass, tooth along the edge"""
+    volume_mm3: Floats
+    """(n,)"""
+    height_mm: Floats
+    """(n,) mean height of the metal above the edge that takes it"""
+    time_s: Floats
+    """(n, 2) when the edge comes to it, and when it is through"""
+    place_mm: Floats
+    """(n, 3) where the edge meets the middle of the piece"""
+    lever_mm: Floats
+    """(n, 3) the same from the tool's centre"""
+    speed: Floats
+    """(n, 3) of the edge against the metal [mm/s]"""
+    push: Floats
+    """(n, 2) unit vector in the rake plane from the metal beyond into the edge, normal to it: components
+    along the tool's axis and away from it"""
+    resolution_mm: float
+
+    def thickness_mm(self) -> Floats:
+        """(n,) mean thickness of the chip that each piece belongs to: twice the metal's mean height."""
+        _, chip = np.unique(self.chip, axis=0, return_inverse=True)
+        chip = chip.reshape(-1)
+        total = np.bincount(chip, self.volume_mm3)
+        mean = np.bincount(chip, self.volume_mm3 * self.height_mm) / np.maximum(total, 1e-300)
+        return 2.0 * mean[chip]
+
+
+@dataclass(slots=True)
+class _Rays:
+    """The brush: rays at angles and heights of the part frame."""
+
+    cos: Floats
+    """(m,) of the angle"""
+    sin: Floats
+    z: Floats
+    """(m,) [mm]"""
+    end: Floats
+    """(m,) how far the metal reaches from the axis [mm]"""
+    inner: float
+    """radius of the bore [mm]"""
+    turn: float
+    """angle between neighbours [rad]"""
+    rise: float
+    """height between neighbours [mm]"""
+
+    @classmethod
+    def of(cls, blank: Blank, step: float) -> "_Rays":
+        around = math.ceil(2.0 * math.pi * blank.radius / step)
+        along = math.ceil(blank.length_mm / step)
+        low, high = blank.z_range
+        angle = 2.0 * math.pi * (np.arange(around) + 0.5) / around
+        z = low + (high - low) * (np.arange(along) + 0.5) / along
+        turned, height = (grid.reshape(-1) for grid in np.meshgrid(angle, z, indexing="ij"))
+        return cls(
+            cos=np.cos(turned),
+            sin=np.sin(turned),
+            z=height,
+            end=blank.outer_radius(height),
+            inner=blank.bore_mm / 2.0,
+            turn=2.0 * math.pi / around,
+            rise=(high - low) / along,
+        )
+
+    def points(self, ray: Ints, radius: Floats) -> Floats:
+        """(n, 3) at some radii of rays (n,)."""
+        return np.column_stack([radius * self.cos[ray], radius * self.sin[ray], self.z[ray]])
+
+
+def removal(
+    blank: Blank,
+    tools: Tools,
+    *,
+    resolution_mm: float | None = None,
+    progress: Callable[[float], None] = lambda _share: None,
+) -> Removal:
+    """The metal that the tools take away; `resolution_mm` is the distance of the rays on the blank's surface.
+
+    Raises InputError for a resolution that would need too much memory or time.
+    """
+    step = _step(blank, tools, resolution_mm)
+    rays = _Rays.of(blank, step)
+    names = [f.name for f in fields(Removal) if f.name != "resolution_mm"]
+    shapes = {"chip": (0, 3), "time_s": (0, 2), "push": (0, 2)}
+    shapes |= dict.fromkeys(("place_mm", "lever_mm", "speed"), (0, 3))
+    parts = {
+        name: [np.zeros(shapes.get(name, (0,)), np.int64 if name == "chip" else float)] for name in names
+    }
+    for number, (cutter, motion) in enumerate(tools):
+        field = DepthField(cutter, motion, blank.radius, blank.z_range)
+        for first in range(0, field.passes.count, PASSES):
+            progress((number + first / field.passes.count) / len(tools))
+            passes = np.arange(first, min(first + PASSES, field.passes.count))
+            for name, values in _cut(field, motion, rays, passes, number).items():
+                parts[name].append(values)
+    progress(1.0)
+    return Removal(**{name: np.concatenate(parts[name]) for name in names}, resolution_mm=step)
+
+
+def _step(blank: Blank, tools: Tools, wanted: float | None) -> float:
+    """The resolution asked for, or a twelfth of the tooth pitch or of the edge's width [mm]."""
+    finest = math.sqrt(2.0 * math.pi * blank.radius * blank.length_mm / RAYS)
+    if wanted is None:
+        wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c, _ in tools]
+        return max(min([blank.radius, *wide]) / RAYS_PER_PITCH, finest)
+    least = finest / math.sqrt(10.0)
+    if wanted < least:
+        raise InputError(
+            f"loads on rays {wanted:g} mm apart would need more memory than allowed",
+            remedy=f"valid: {math.ceil(least * 1e3) / 1e3:g} or more",
+        )
+    return wanted
+
+
+def _cut(
+    field: DepthField, motion: CutterMotion, rays: _Rays, passes: Ints, stretch: int
+) -> dict[str, NDArray]:
+    """What some passes that follow one another take off the rays; the rays are cut."""
+    ray, index = _met(field, motion, rays, passes)
+    parts = batches(np.arange(len(ray) + 1))
+    ends = in_parallel(lambda part: _end(field, rays, ray[part], index[part]), parts)
+    end = np.concatenate([np.zeros(0), *ends])
+    # on each ray only what stands when its pass comes: the shortest that earlier passes have left
+    order = np.lexsort((index, ray))
+    ray, index, end = ray[order], index[order], end[order]
+    start = _shortest_before(ray, rays.end[ray], end)
+    some = np.flatnonzero(end < start - THINNEST)
+    ray, index, end, start = ray[some], index[some], end[some], start[some]
+    np.minimum.at(rays.end, ray, end)
+    return _seen(field, motion, rays, (ray, index, end, start), stretch)
+
+
+def _met(field: DepthField, motion: CutterMotion, rays: _Rays, passes: Ints) -> tuple[Ints, Ints]:
+    """Pairs of rays and passes whose edges come to the rays' ends or further in."""
+    p, samples = field.passes, np.arange(len(motion.time_s))
+    rows: list[tuple[Ints, Ints]] = []
+    ends = motion.mount.moved(rays.points(np.arange(len(rays.z)), rays.end))
+    for index in passes:
+        work = float(np.interp(p.at[index], samples, motion.work_angle))
+        centre = np.array([np.interp(p.at[index], samples, column) for column in motion.centre.T])
+        cos, sin = math.cos(work), math.sin(work)
+        turned = np.column_stack([ends[:, 0] * cos - ends[:, 1] * sin, ends[:, 0] * sin + ends[:, 1] * cos])
+        off = np.column_stack([turned, ends[:, 2]]) - centre
+        a, b = off @ motion.basis[0], off @ motion.basis[1]
+        # the sooner or later the edge comes, the further the stock has gone on
+        way = p.travel[index] * np.minimum(np.abs(np.arctan2(b, a)) / REACH, 1.0) + SLACK
+        ray = np.flatnonzero((np.hypot(a, b) < field.cutter.radius + way) & (rays.end > rays.inner))
+        rows.append((ray, np.full(len(ray), index)))
+    return np.concatenate([ray for ray, _ in rows]), np.concatenate([index for _, index in rows])
+
+
+def _end(field: DepthField, rays: _Rays, ray: Ints, index: Ints) -> Floats:
+    """(n,) radii at which passes cut rays off; inf where they do not."""
+    out = np.full(len(ray), np.inf)
+    high = rays.end[ray]
+    meeting = field.evaluate(rays.points(ray, high), index)
+    cut = np.flatnonzero(meeting.depth > 0)
+    ray, index, high, above = ray[cut], index[cut], high[cut], meeting.depth[cut]
+    low = np.maximum(high - 2.0 * (field.cutter.radius - meeting.rho[cut]) - SLACK, rays.inner)
+    below = field.evaluate(rays.points(ray, low), index).depth
+    through = below >= 0  # the edge comes from below, or through to the bore
+    below = np.where(through, -above, below)
+    at = high.copy()
+    rows = np.arange(len(cut))
+    for _ in range(STEPS):
+        at[rows] = high[rows] - above[rows] / (above[rows] - below[rows]) * (high[rows] - low[rows])
+        depth = field.evaluate(rays.points(ray[rows], at[rows]), index[rows]).depth
+        cuts = depth > 0
+        inside, outside = rows[cuts], rows[~cuts]
+        high[inside], above[inside], below[inside] = at[inside], depth[cuts], 0.5 * below[inside]
+        low[outside], below[outside], above[outside] = at[outside], depth[~cuts], 0.5 * above[outside]
+        rows = rows[np.abs(depth) > CLOSE]
+    out[cut] = np.where(through, rays.inner, at)
+    return out
+
+
+def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:
+    """(n,) what stands of each ray when each pass comes; pairs in the order of rays, then passes."""
+    same = np.diff(ray, prepend=-1) == 0
+    # a running minimum that begins anew with each ray: every ray lies far below the one before
+    drop = FAR * np.cumsum(~same)
+    left = np.minimum.accumulate(np.minimum(standing, end) - drop) + drop
+    return np.where(same, np.roll(left, 1), standing)
+
+
+def _seen(
+    field: DepthField,
+    motion: CutterMotion,
+    rays: _Rays,
+    pieces: tuple[Ints, Ints, Floats, Floats],
+    stretch: int,
+) -> dict[str, NDArray]:
+    """Pieces of rays, from their ends to where they stood, as the edges see them that take them away."""
+    ray, index, end, start = pieces
+    middle = 0.5 * (end + start)
+    met = [field.evaluate(rays.points(ray, radius), index) for radius in (end, middle, start)]
+    height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1) @ SIMPSON
+    pitch = field.cutter.profile.pitch
+    tooth = (
+        np.rint(met[1].s / pitch).astype(np.int64) if math.isfinite(pitch) else np.zeros(len(ray), np.int64)
+    )
+    # the edge that has left the new surface is the one that bears the force
+    _, by_s, by_rho = field.cutter.profile.depth(met[0].s, met[0].rho)
+    place, lever, speed = _edge(motion, rays.points(ray, middle), met[1].instant)
+    # the edge needs some time to cross the ray's own breadth and height as well
+    ends = np.stack([met[0].instant, met[1].instant, met[2].instant])
+    ends = np.interp(ends, np.arange(len(motion.time_s)), motion.time_s)
+    around = speed[:, 1] * place[:, 0] - speed[:, 0] * place[:, 1]
+    across = np.abs(speed[:, 2]) * rays.rise + np.abs(around) * rays.turn
+    half = 0.5 * across / np.maximum((speed * speed).sum(axis=1), 1e-12)
+    return {
+        "chip": np.column_stack([np.full(len(ray), stretch), index, tooth]),
+        "volume_mm3": 0.5 * (start * start - end * end) * rays.turn * rays.rise,
+        "height_mm": height,
+        "time_s": np.column_stack([ends.min(axis=0) - half, ends.max(axis=0) + half]),
+        "place_mm": place,
+        "lever_mm": lever,
+        "speed": speed,
+        "push": np.column_stack([by_s, by_rho]),
+    }
+
+
+def _edge(motion: CutterMotion, points: Floats, instant: Floats) -> tuple[Floats, Floats, Floats]:
+    """Where points (n, 3) of the part stand at fractional samples, as seen from the work spindle and from the
+    tool's centre [mm], and how fast the edge that meets them there passes them [mm/s]."""
+    cell = np.clip(instant.astype(np.int64), 0, len(motion.time_s) - 2)
+    share = (instant - cell)[:, None]
+    step = np.diff(motion.time_s)[cell][:, None]
+
+    def at(values: Floats) -> tuple[Floats, Floats]:
+        low, high = values[cell], values[cell + 1]
+        return low + share * (high - low), (high - low) / step
+
+    work, work_rate = at(motion.work_angle[:, None])
+    _, tool_rate = at(motion.tool_angle[:, None])
+    centre, feed = at(motion.centre)
+    x, y, z = motion.mount.moved(points).T[:, :, None]
+    cos, sin = np.cos(work), np.sin(work)
+    place = np.hstack([x * cos - y * sin, x * sin + y * cos, z])
+    lever = place - centre
+    edge = feed + tool_rate * np.cross(motion.basis[2], lever)
+    metal = work_rate * np.cross(np.array([0.0, 0.0, 1.0]), place)
+    return place, lever, edge - metal
