@@ -118,7 +118,7 @@ def run_program(
         )
     else:
         machine = MujocoMachine(misread(ready.driven, settings.encoders))
-    guarded = Guarded(machine, ready.tools[0].assembly)
+    guarded = Guarded(machine, {tool.number: tool.assembly for tool in ready.tools})
     return record(controller, guarded, ready, load=load, progress=progress)
 
 

@@ -93,7 +93,8 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
     changes = Changes(table=job.machine.changes(), place=lambda path: job.place("machine", *path))
     spec = load_machine(folder.name, models=folder.parent, changes=changes)
     setup = Setup(job.machine.setup)
-    zero = MachineZero(x_mm=job.setup.reference.X, z_mm=job.setup.reference.Z)
+    reference = job.setup.reference
+    machine_zero = MachineZero(x_mm=reference.X, z_mm=reference.Z)
     first = next(iter(cutters.values()))
     work = WorkMount(
         diameter_mm=job.work.diameter_mm,
@@ -105,11 +106,14 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
     for number, cutter in cutters.items():
         mount = ToolMount(
             carrier_swivel_deg=math.degrees(cutter.swivel),
-            radius_mm=first.radius,
+            radius_mm=cutter.radius,
             length_mm=_length(job, job.tools[number]),
             edges=max(len(cutter.gash_angle), 1),
         )
         mounts.append(mount)
+        # X counts from the tips of the first tool: another one's centre stands where that one's would
+        aside = 2.0 * (first.radius - cutter.radius)
+        zero = MachineZero(x_mm=reference.X + aside, z_mm=reference.Z)
         assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
         kinematics = replace(
             faulty(
@@ -128,7 +132,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         probe=_probe(
             job,
             tools[0].kinematics,
-            lambda stylus: assemble(spec, setup, work=work, tool=mounts[0], zero=zero, stylus=stylus),
+            lambda stylus: assemble(spec, setup, work=work, tool=mounts[0], zero=machine_zero, stylus=stylus),
         ),
     )
 

@@ -213,21 +213,21 @@ def _apply_drives(mjcf: mujoco.MjSpec, spec: MachineSpec, setup: Setup) -> None:
 
 
 def _mount_work(mjcf: mujoco.MjSpec, work: WorkMount, stick_out_mm: float) -> None:
-    """Blank and arbor as one turned body; the arbor fills the bore, so both are solid steel."""
+    """Blank and arbor turn together; the arbor fills the bore, so both are solid steel."""
     mount = mjcf.body("work")
     mount.pos = [0.0, 0.0, stick_out_mm * MM]
-    blank = mount.add_body(name="blank")
     back, chuck = -work.length_mm * MM, -stick_out_mm * MM
-    for radius, start, end, material in (
-        (work.diameter_mm / 2 * MM, 0.0, back, "work"),
-        (work.arbor_diameter_mm / 2 * MM, back, chuck, "dark"),
+    for name, radius, start, end, material in (
+        ("blank", work.diameter_mm / 2 * MM, 0.0, back, "work"),
+        ("arbor", work.arbor_diameter_mm / 2 * MM, back, chuck, "dark"),
     ):
         if start == end:
             continue
+        body = mount.add_body(name=name)
         ends = [0.0, 0.0, start, 0.0, 0.0, end]
         shape = {"type": mujoco.mjtGeom.mjGEOM_CYLINDER, "size": [radius, 0, 0], "fromto": ends}
-        blank.add_geom(mjcf.find_default("visual"), material=material, **shape)
-        blank.add_geom(
+        body.add_geom(mjcf.find_default("visual"), material=material, **shape)
+        body.add_geom(
             mjcf.find_default("work_collision"), mass=STEEL * math.pi * radius**2 * (start - end), **shape
         )
 

@@ -7,7 +7,9 @@ by d. So a whole run takes some hundred distances, and the first tick that touch
 
 # pyright: reportAttributeAccessIssue=false
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import mujoco  # its bindings are compiled and carry no types
 import numpy as np
@@ -39,38 +41,68 @@ class _Pair:
 class Guarded:
     """A machine that stops with an alarm at the first tick in which two of its bodies touch."""
 
-    def __init__(self, machine: Machine, assembly: Assembly) -> None:
+    def __init__(self, machine: Machine, mounted: Assembly | Mapping[int, Assembly]) -> None:
+        """`mounted`: the machine as it stands, or by tool number as it stands with each tool in the spindle,
+        the first one also for tools that are not among them."""
         self._machine = machine
-        self._model = assembly.model
-        self._data = mujoco.MjData(assembly.model)
-        self._qpos = [int(assembly.model.joint(j).qposadr[0]) for j in assembly.joints]
-        self._pairs = _pairs(assembly)
+        by_tool = mounted if isinstance(mounted, Mapping) else {0: mounted}
+        self._shapes = {tool: _Shapes(assembly) for tool, assembly in by_tool.items()}
+        self._first = next(iter(self._shapes.values()))
 
     def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:
         """Move along the chunk up to its end, or to the tick of the first collision."""
         feedback = self._machine.advance(chunk, load)
-        hits = [
-            (tick, k)
-            for k, pair in enumerate(self._pairs)
-            if (tick := self._first_touch(pair, feedback.actual)) is not None
-        ]
-        if not hits:
-            return feedback
-        tick, k = min(hits)
-        ticks = tick + 1
-        return Feedback(
-            ticks=ticks,
-            setpoint=feedback.setpoint[:ticks],
-            actual=feedback.actual[:ticks],
-            measured=None if feedback.measured is None else feedback.measured[:ticks],
-            alarms=(MachineAlarm(number="HT9030", axis=None, found=self._words(self._pairs[k])),),
-        )
+        change = np.flatnonzero(np.diff(chunk.tool[: feedback.ticks])) + 1
+        for begin, end in pairwise([0, *change.tolist(), feedback.ticks]):
+            if begin == end:
+                break
+            shapes = self._shapes.get(int(chunk.tool[begin]), self._first)
+            touch = shapes.first_touch(feedback.actual[begin:end])
+            if touch is not None:
+                tick, words = touch
+                return _ended(feedback, begin + tick + 1, words)
+        return feedback
 
     def rest(self, ticks: int) -> None:
         """Let `ticks` pass in which nothing moves."""
         self._machine.rest(ticks)
 
-    def _first_touch(self, pair: _Pair, actual: Floats) -> int | None:
+
+class _Shapes:
+    """The shapes of one machine as mounted that may come to touch."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._model = assembly.model
+        self._data = mujoco.MjData(assembly.model)
+        self._qpos = [int(assembly.model.joint(j).qposadr[0]) for j in assembly.joints]
+        self.pairs = _pairs(assembly)
+        # no shape goes further than the slides together, whichever of them carry it
+        travel = [np.linalg.norm(pair.slides, axis=1) for pair in self.pairs]
+        self._travel = np.max(travel, axis=0) if travel else np.zeros(len(assembly.joints))
+        self._place = np.zeros(len(assembly.joints))
+        self._clearance = 0.0
+        """[m] that every pair has at that place of the axes, at least"""
+
+    def first_touch(self, actual: Floats) -> tuple[int, str] | None:
+        """Row of (n, axes) positions in which two of them first touch, and what is to be said of it."""
+        if not self.pairs or (np.abs(actual - self._place) @ self._travel).max() < self._clearance:
+            return None
+        hits = [
+            (tick, k)
+            for k, pair in enumerate(self.pairs)
+            if (tick := self._touch_of(pair, actual)) is not None
+        ]
+        if hits:
+            tick, k = min(hits)
+            return tick, self._words(self.pairs[k])
+        path = [actual[-1] @ pair.slides - pair.place for pair in self.pairs]
+        left = [
+            pair.clearance - float(np.linalg.norm(way)) for pair, way in zip(self.pairs, path, strict=True)
+        ]
+        self._place, self._clearance = actual[-1].copy(), min(left)
+        return None
+
+    def _touch_of(self, pair: _Pair, actual: Floats) -> int | None:
         """Row of (n, axes) positions in which the pair first touches."""
         path = actual @ pair.slides
         first = 0
@@ -80,13 +112,13 @@ class Guarded:
                 return None
             first += int(np.argmax(moved))
             pair.place = path[first]
-            pair.clearance = self._distance(pair, actual[first])
+            pair.clearance = self.distance(pair, actual[first])
             if pair.clearance <= 0.0:
                 return first
             first += 1
         return None
 
-    def _distance(self, pair: _Pair, axes: Floats) -> float:
+    def distance(self, pair: _Pair, axes: Floats) -> float:
         """Distance [m] of the pair with the slides at (axes,) positions; spindles do not matter."""
         slides = np.abs(pair.slides).any(axis=1)
         self._data.qpos[self._qpos] = np.where(slides, axes * MM, 0.0)
@@ -99,6 +131,17 @@ class Guarded:
             for g in (pair.moving, pair.fixed)
         ]
         return f"{names[0]} touches {names[1]}"
+
+
+def _ended(feedback: Feedback, ticks: int, words: str) -> Feedback:
+    """The feedback up to the tick of a collision."""
+    return Feedback(
+        ticks=ticks,
+        setpoint=feedback.setpoint[:ticks],
+        actual=feedback.actual[:ticks],
+        measured=None if feedback.measured is None else feedback.measured[:ticks],
+        alarms=(MachineAlarm(number="HT9030", axis=None, found=words),),
+    )
 
 
 def _pairs(assembly: Assembly) -> list[_Pair]:

@@ -111,7 +111,7 @@ class MujocoMachine:
         pressing = None if load is None or limit == 0 else Pressing(load, self._tick, limit, len(self._axes))
         run = self._run(chunk, limit, watch, pressing)
         ticks = len(run.motor)
-        if not np.isfinite(run.motor).all() or any(w.number for w in self.data.warning):
+        if not np.isfinite(run.motor).all() or self.data.warning.number.any():
             raise MachineError(
                 f"the machine's motion broke down between ticks {self._tick} and {self._tick + ticks}",
                 remedy="look for setpoints or loads beyond what the drives can do",

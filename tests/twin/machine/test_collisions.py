@@ -15,6 +15,7 @@ from twin.machine import (
     Assembly,
     Guarded,
     IdealMachine,
+    MachineZero,
     MujocoMachine,
     Setup,
     ToolMount,
@@ -102,11 +103,44 @@ def test_random_walks_stop_where_looking_at_every_tick_would() -> None:
         setpoint = path(*[(float(x), float(z)) for x, z in corners], step=2.0)
         assembly = mounted()
         guarded = Guarded(IdealMachine(4), assembly)
-        every = [min(guarded._distance(pair, row) for pair in guarded._pairs) for row in setpoint]
+        shapes = guarded._first
+        every = [min(shapes.distance(pair, row) for pair in shapes.pairs) for row in setpoint]
         touching = np.flatnonzero(np.array(every) <= 0.0)
         ticks, alarms = follow(assembly, setpoint)
         assert bool(alarms) == bool(len(touching))
         assert ticks == (touching[0] + 1 if len(touching) else len(setpoint))
+
+
+@pytest.mark.parametrize("size", [1, 3, 4096])
+def test_chunks_of_any_size_end_at_the_same_tick(size: int) -> None:
+    setpoint = path((120.0, 40.0), (60.0, -20.0), (30.0, -140.0), step=0.5)
+    assert follow(mounted(), setpoint, size) == follow(mounted(), setpoint, 64)
+
+
+def test_each_tool_is_guarded_by_its_own_shape() -> None:
+    """Behind the blank towards an arbor of Ø 21: the tip of the first hob is there at X21, one whose tips
+    stand 5 mm less far out 10 mm of X later."""
+    far = WorkMount(diameter_mm=44.0, length_mm=20.0, arbor_diameter_mm=21.0, stick_out_mm=300.0)
+    small = ToolMount(carrier_swivel_deg=90.0, radius_mm=30.0, length_mm=80.0, edges=12)
+    tools = {
+        1: mounted(far),
+        2: assemble(DELIVERED, Setup.HOBBING, work=far, tool=small, zero=MachineZero(x_mm=410.0)),
+    }
+    setpoint = path((80.0, -100.0), (0.0, -100.0), step=0.01)
+    none = np.zeros(len(setpoint))
+    for number, touches in ((1, 21.0), (2, 11.0)):
+        feedback = Guarded(IdealMachine(4), tools).advance(
+            Chunk(
+                first_tick=0,
+                setpoint=setpoint,
+                block=none.astype(np.int32),
+                sync=none.astype(bool),
+                tool=np.full(len(setpoint), number, np.int16),
+            )
+        )
+        (alarm,) = feedback.alarms
+        assert alarm.found == "cutter touches arbor"
+        assert 2.0 * feedback.actual[-1, X] + 400.0 == pytest.approx(touches, abs=0.03)
 
 
 def test_alarm_names_bodies_time_and_line() -> None:
