@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import Enum
+from pathlib import PurePath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +49,15 @@ class Message:
     @property
     def place(self) -> str:
         """`file:line:column`, as far as known."""
-        return ":".join(str(part) for part in (self.file, self.line, self.column) if part not in ("", None))
+        return self._placed(self.file)
+
+    @property
+    def short_place(self) -> str:
+        """The same without the folders of the file."""
+        return self._placed(PurePath(self.file).name if self.file else "")
+
+    def _placed(self, file: str) -> str:
+        return ":".join(str(part) for part in (file, self.line, self.column) if part not in ("", None))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -125,7 +125,7 @@ def _nothing(data: ReportData, stop: tuple[str, ...]) -> Headline:
 
 
 def _stop(alarm: Message) -> str:
-    place = f" at {alarm.place}" if alarm.place else ""
+    place = f" at {alarm.short_place}" if alarm.short_place else ""
     found_there = f": {alarm.found}" if alarm.found else ""
     return f"The program stopped{place} with {alarm.number} {alarm.text}{found_there}."
 

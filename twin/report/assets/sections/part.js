@@ -491,7 +491,7 @@
       const at = strips.at(-1)?.points.at(-1);
       if (at) {
         const off = at.map((x, i) => x - centre[i]), far = Math.hypot(...off) || 1;
-        aside = off.map((x) => (x / far) * Math.min(0.5 * far, 1.6 * radius));
+        aside = off.map((x) => (x / far) * Math.min(0.5 * far, 0.8 * radius));
       }
       for (const { points } of strips) {
         for (const p of points) reach = Math.max(reach, Math.hypot(p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]));

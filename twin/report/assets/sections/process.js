@@ -128,8 +128,11 @@
   document.addEventListener("hobtwin:part", say);
   document.addEventListener("hobtwin:place", ({ detail }) =>
     choose(box.querySelector(`[data-block="${detail.block}"]`)));
-  /* the longest block that moved is shown first */
-  const longest = Object.entries(run.blocks).reduce(
-    (best, [k, block]) => (best && run.blocks[best].duration >= block.duration ? best : k), null);
-  if (longest !== null) choose(box.querySelector(`[data-block="${longest}"]`));
+  /* shown first is the block that made most of the part, else the longest that moved */
+  const weight = (k) => [run.areas[k] ?? 0, run.blocks[k].duration];
+  const first = Object.keys(run.blocks).reduce((best, k) => {
+    const [a, b] = [weight(k), best === null ? [-1, -1] : weight(best)];
+    return a[0] > b[0] || (a[0] === b[0] && a[1] > b[1]) ? k : best;
+  }, null);
+  if (first !== null) choose(box.querySelector(`[data-block="${first}"]`));
 })();
