@@ -17,7 +17,7 @@ from twin.errors import PartError
 from twin.faults.drives import misread
 from twin.kinematics import cutter_motion, part_frame
 from twin.load.forces import CuttingLoad
-from twin.machine import Guarded, IdealMachine, MujocoMachine
+from twin.machine import Guarded, IdealMachine, MujocoMachine, SyncWindow
 from twin.presets import ControllerSettings
 from twin.recording import BlockRef, Recording
 from twin.setup import MountedTool, Ready
@@ -118,6 +118,7 @@ def run_program(
         )
     else:
         machine = MujocoMachine(misread(ready.driven, settings.encoders))
+    machine = SyncWindow(machine, settings.parameters.number(9006))
     guarded = Guarded(machine, {tool.number: tool.assembly for tool in ready.tools})
     return record(controller, guarded, ready, load=load, progress=progress)
 

@@ -89,7 +89,7 @@ OT0510 | §4, stroke limits | | the end point lies beyond a stroke limit, found 
 OT0511 | §4, stroke limits | | the end point lies beyond a stroke limit, found before the motion begins
 DS0020 | inclined axis, 参考点返回 | G28 G30 G27 | the orthogonal axis returns before the inclined one has
 MC3000 | §1, System variables | | the program itself raises it: #3000 = n, with its message
-SV0407 | Fanuc alarms | | the drives of a pair have drifted apart
+SV0407 | hobbing, 解除同步 | G81 G51.2 | the slave of the gear box has left its window, parameter 9006
 SV0410 | Fanuc alarms | | a standing axis is pushed off its position
 SV0411 | Fanuc alarms | | a moving axis lags too far behind
 HT9000 | §1 | | the file is no text in UTF-8 or GBK

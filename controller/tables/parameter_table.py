@@ -180,6 +180,16 @@ _ROWS: tuple[tuple[int, str, bool, float, float, str, str, str], ...] = (
         _RULINGS,
     ),
     (9004, "INTEGER", False, 1, 5, "", "most axes that one block may move together (PS0015)", _RULINGS),
+    (
+        9006,
+        "REAL",
+        False,
+        0,
+        1296000,
+        "arcsec",
+        "window of the gear box: error of the slave beyond which SV0407 cancels it; 0 = not watched",
+        _RULINGS,
+    ),
 )
 
 _SWITCH_CLAUSE = "Fanuc 6910-6965; inclined axis, 注意 9"

@@ -13,6 +13,7 @@ from twin.machine.drive import Drive, DriveKind
 from twin.machine.ideal import IdealMachine
 from twin.machine.physical import MujocoMachine
 from twin.machine.spec import Changes, MachineSpec, Setup, load_machine
+from twin.machine.sync_window import SyncWindow
 from twin.machine.watching import MachineError
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "MachineZero",
     "MujocoMachine",
     "Setup",
+    "SyncWindow",
     "ToolMount",
     "WorkMount",
     "assemble",

@@ -16,7 +16,7 @@ from twin.job import read_job
 from twin.machine import MujocoMachine
 from twin.presets import cutters_of, settings_of
 from twin.recording import Recording
-from twin.session import record
+from twin.session import record, run_program
 from twin.setup import make_ready, require_analogue
 
 JOB = """
@@ -126,6 +126,32 @@ def test_an_induction_motor_the_controller_does_not_know_of_is_refused(tmp_path:
         require_analogue(make_ready(job, cutters), settings_of(job, cutters).parameters)
     assert refusal.value.place
     assert refusal.value.place.line == text.splitlines().index('kind = "variable_frequency"') + 1
+
+
+@pytest.mark.parametrize("size", [7, 4096])
+def test_a_slave_out_of_its_window_ends_the_run_at_that_very_tick(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    """The work lags by 135 arcsec at 600 rpm of the hob, by half of that at 300: a window between the two is
+    left while the hob is run up."""
+    free = recorded(tmp_path, follow=True)
+    window = 0.5 * (lag(300, KV_WORK) + lag(600, KV_WORK))
+    beyond = int(np.argmax(np.abs(np.nan_to_num(free.sync_error_arcsec)) > window))
+    monkeypatch.setattr("twin.session.CHUNK", size)
+    text = JOB.format(parameters=f'"201#7" = 1\n"9006" = {window}', k_ff=K_FF, kv_tool=100.0, kind="servo")
+    (tmp_path / "job.toml").write_text(text, encoding="utf-8")
+    job = read_job(tmp_path)
+    cutters = cutters_of(job)
+    program = parse_program(PROGRAM, file="program.nc")
+    session = run_program(program, settings_of(job, cutters), make_ready(job, cutters), ideal=False)
+    (alarm,) = session.alarms
+    assert alarm.number == "SV0407"
+    assert alarm.span
+    assert alarm.span.line in {5, 6}
+    assert "C: " in alarm.found
+    assert f"window {window:g} arcsec, at {free.time_s[beyond]:.3f} s" in alarm.found
+    assert session.recording.time_s[-1] == free.time_s[beyond]
+    assert np.array_equal(session.recording.actual, free.actual[: beyond + 1])
 
 
 def test_recording_file_holds_error_and_spectrum(tmp_path: Path) -> None:
