@@ -12,9 +12,10 @@ import numpy as np
 from twin.errors import InputError, PartError
 from twin.inspection.involute import Involute, geometry, involute
 from twin.inspection.nominal import GearNominal
-from twin.inspection.recognise import Outline, phase_sums
+from twin.inspection.recognise import Outline
 from twin.inspection.sections import FOLD, circle_crossings, plane_segments_in_parts, unfolded
 from twin.inspection.solid import Floats, Solid
+from twin.inspection.turning import phase_sums
 from twin.inspection.usable import steep_ends, undercut_corner
 
 SPUR_BELOW = 0.1

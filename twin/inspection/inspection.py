@@ -54,7 +54,8 @@ def inspect(
     bodies = separate_bodies(solid)
     if bodies > 1:
         return _nothing(f"the mesh holds {bodies} separate bodies, a part is one", nominal)
-    outline = recognise(solid)
+    wanted = _count(nominal)
+    outline = recognise(solid, wanted=wanted)
     axis = None
     if own_axis:
         try:
@@ -62,14 +63,31 @@ def inspect(
         except PartError as fault:
             return _nothing(fault.text, nominal)
         solid = straightened(solid, axis)
-        outline = recognise(solid)
+        outline = recognise(solid, wanted=wanted)
     if outline.form is Form.GEAR and not isinstance(nominal, PolygonNominal):
         result = _inspect_gear(solid, outline, nominal, teeth, pressure_deg)
     elif outline.form is Form.POLYGON and not isinstance(nominal, GearNominal):
         result = _inspect_polygon(solid, outline, nominal)
     else:
         result = _nothing(_unexpected(outline, nominal), nominal)
-    return replace(result, axis=axis, findings=(*result.findings, *solid.mended))
+    notes = (*_others(outline), *solid.mended)
+    return replace(result, axis=axis, findings=(*result.findings, *notes))
+
+
+def _count(nominal: Nominal | None) -> int | None:
+    """Return how many teeth or sides are wanted."""
+    if isinstance(nominal, GearNominal):
+        return nominal.number_of_teeth
+    return nominal.number_of_sides if isinstance(nominal, PolygonNominal) else None
+
+
+def _others(outline: Outline) -> list[str]:
+    """Say what else stands about the axis and was not looked at."""
+    return [
+        f"{count} teeth or flats stand about z = {low:.1f} to {high:.1f} mm too: another part of the piece, "
+        "not measured"
+        for count, low, high in outline.others
+    ]
 
 
 def _check_nominal(nominal: Nominal | None, pressure_deg: float) -> None:

@@ -17,12 +17,13 @@ from scipy.spatial import ConvexHull
 from twin.errors import PartError
 from twin.inspection.facets import chord_depth_um
 from twin.inspection.nominal import PolygonNominal
-from twin.inspection.recognise import Complexes, Outline
+from twin.inspection.recognise import Outline
 from twin.inspection.result import Face, PolygonResult
 from twin.inspection.sections import Segments, outer_outlines, plane_segments_in_parts
 from twin.inspection.sections import outline as chained_outline
 from twin.inspection.solid import Floats, Ints, Solid
 from twin.inspection.tolerances import flatness_limits_um
+from twin.inspection.turning import Complexes
 
 PLANES = 21
 """sections read over the length"""

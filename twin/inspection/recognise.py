@@ -7,26 +7,13 @@ outline, which gives the number of teeth or corners; their phase along z gives t
 import math
 from dataclasses import dataclass
 from enum import Enum
-from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from twin.inspection.sections import (
-    FOLD,
-    Crossings,
-    Segments,
-    circle_crossings,
-    outer_outlines,
-    plane_segments,
-    plane_segments_in_parts,
-    radial_limits,
-    turns_about_axis,
-    unfolded,
-)
+from twin.inspection.ends import end_of_depth
 from twin.inspection.solid import Floats, Ints, Solid
-
-Complexes = NDArray[np.complex128]
+from twin.inspection.survey import ROUND, Survey, longest_run, runs_of, survey
+from twin.inspection.turning import turning
 
 PLANES = 48
 """sections taken over the length of the part"""
@@ -37,10 +24,8 @@ FEWEST = 5
 """sections in a row that must be alike"""
 MOST_SIDES = 24
 """with more corners than this an outline is round, not a polygon"""
-NICK = 0.05
-"""crossings closer together than this part of a pitch belong to one tooth when teeth are counted"""
-ROUND = 1e-3
-"""an outline of less relative depth is round: the chords of a faceted circle"""
+LOOKS = 3
+"""times a short toothed stretch is looked at more closely"""
 
 
 class Form(Enum):
@@ -74,6 +59,8 @@ class Outline:
     """rotation along z [rad/mm], + right-hand"""
     phase: float = 0.0
     """angle of one tooth's centre, or of one corner, at `middle`"""
+    others: tuple[tuple[int, float, float], ...] = ()
+    """teeth or corners, z from and z to of other stretches"""
 
     @property
     def middle(self) -> float:
@@ -86,56 +73,116 @@ class Outline:
         return self.tip_radius - self.root_radius
 
 
-def recognise(solid: Solid) -> Outline:
-    """Find teeth or flats about the z axis."""
+def recognise(solid: Solid, *, wanted: int | None = None) -> Outline:
+    """Find teeth or flats about the z axis.
+
+    Of several toothed stretches the longest is taken, or that with as many teeth or sides as `wanted`.
+    """
     z = solid.vertices[:, 2]
-    length = float(np.ptp(z))
-    crossed = float((solid.face_high - solid.face_low).sum()) / length
-    planes = int(np.clip(MOST_CROSSINGS / crossed, FEWEST_PLANES, PLANES))
-    heights = _midpoints(float(z.min()), float(z.max()), planes)
-    low, high, counts = _survey(solid, heights)
-    if not np.isfinite(low).all():
+    bottom, top = float(z.min()), float(z.max())
+    seen = _look(solid, bottom, top)
+    if not np.isfinite(seen.low).all():
         return Outline(
             form=Form.NEITHER,
             reason="the solid has no section at some heights: it is not one body along the z axis",
         )
-    depth = high - low
-    if (depth < ROUND * high).all():
-        return _round(low, high)
-    counts[depth < ROUND * high] = 0
-    first, last = _longest_run(counts)
-    if counts[first] == 0 or last - first + 1 < FEWEST:
-        return _neither(
-            f"no regular teeth or flats: the outline wanders between diameters {2 * low.min():.2f} "
-            f"and {2 * high.max():.2f} mm in uneven steps",
-            low,
-            high,
-        )
-    full = _full_depth(low, depth, first, last)
+    if (seen.depth < ROUND * seen.high).all():
+        return _round(seen.low, seen.high)
+    others: tuple[tuple[int, float, float], ...] = ()
+    for _ in range(LOOKS):
+        first, last = longest_run(seen.counts, wanted)
+        others = others or _others(seen, (first, last))
+        closer = _closer(seen, first, last)
+        if closer is None:
+            break
+        seen = _look(solid, *closer)
+    return _outline(solid, seen, longest_run(seen.counts, wanted), others)
+
+
+def _outline(
+    solid: Solid, seen: Survey, run: tuple[int, int], others: tuple[tuple[int, float, float], ...]
+) -> Outline:
+    """Tell what the sections of a run show."""
+    first, last = run
+    if seen.counts[first] == 0 or last - first + 1 < FEWEST:
+        return _neither(_uneven(seen), seen.low, seen.high)
+    full = _full_depth(seen.low, seen.depth, first, last)
     if len(full) < FEWEST:
-        return _neither("no regular teeth or flats: the outline changes all along the axis", low, high)
-    form = _form(int(counts[first]), float(np.median(low[full])), float(np.median(high[full])))
+        return _neither(
+            "no regular teeth or flats: the outline changes all along the axis", seen.low, seen.high
+        )
+    count = int(seen.counts[first])
+    low, high = seen.low[full], seen.high[full]
+    form = _form(count, float(np.median(low)), float(np.median(high)))
     if form is Form.NEITHER:
-        return _round(low[full], high[full])
-    at_start, at_end = full[0] == 0, full[-1] == planes - 1
-    below, above = float(heights[full[0]]), float(heights[full[-1]])
-    z_low = float(z.min()) if at_start else below
-    z_high = float(z.max()) if at_end else above
-    # beyond the last full section there may be nothing of the teeth's size: a shaft is no unfinished gear
-    rim = np.median(low[full]) + 0.7 * np.median(depth[full])
-    whole = (at_start or high[full[0] - 1] < rim) and (at_end or high[full[-1] + 1] < rim)
-    root, tip = float(low[full].min()), float(high[full].max())
-    twist, phase = _twist(solid, int(counts[first]), z_low, z_high, (root + tip) / 2)
+        return _round(low, high)
+    (z_low, done_low), (z_high, done_high) = (end_of_depth(solid, seen, full, end) for end in (0, -1))
+    root, tip = float(low.min()), float(high.max())
+    turns = turning(solid, count, z_low, z_high, (root + tip) / 2)
+    if turns.back_at is not None:
+        return _neither(
+            f"{count} teeth turn one way up to z = {turns.back_at:.1f} mm and the other way from there on: "
+            "a double helix, or two gears; one helix is measured at a time",
+            seen.low,
+            seen.high,
+        )
     return Outline(
         form=form,
-        count=int(counts[first]),
+        count=count,
         low=z_low,
         high=z_high,
-        whole=bool(whole),
+        whole=done_low and done_high,
         root_radius=root,
         tip_radius=tip,
-        twist=twist,
-        phase=phase,
+        twist=turns.twist,
+        phase=turns.phase,
+        others=others,
+    )
+
+
+def _look(solid: Solid, bottom: float, top: float) -> Survey:
+    """Survey a solid between two heights."""
+    crossed = float((solid.face_high - solid.face_low).sum()) / float(np.ptp(solid.vertices[:, 2]))
+    planes = int(np.clip(MOST_CROSSINGS / crossed, FEWEST_PLANES, PLANES))
+    return survey(solid, bottom, top, planes)
+
+
+def _closer(seen: Survey, first: int, last: int) -> tuple[float, float] | None:
+    """Return the heights between which to look again: teeth that are a small part of what was looked at."""
+    many = len(seen.heights)
+    if seen.counts[first] == 0 or 2 * (last - first + 1) >= many:
+        return None
+    beside = [k for k in (first - 1, last + 1) if 0 <= k < many]
+    if seen.wild[beside].any():
+        return None
+    return (
+        float(seen.heights[first - 1]) if first > 0 else seen.bottom,
+        float(seen.heights[last + 1]) if last < many - 1 else seen.top,
+    )
+
+
+def _others(seen: Survey, run: tuple[int, int]) -> tuple[tuple[int, float, float], ...]:
+    """Return count, z from and z to of the other stretches of regular teeth or flats."""
+    runs = [other for other in runs_of(seen.counts) if other != run and other[1] - other[0] + 1 >= FEWEST]
+    return tuple(
+        (int(seen.counts[a]), float(seen.heights[a]), float(seen.heights[b]))
+        for a, b in runs
+        if seen.counts[a] > 0
+    )
+
+
+def _uneven(seen: Survey) -> str:
+    """Say why there are no regular teeth."""
+    gaps = np.flatnonzero(seen.missing)
+    if 2 * len(gaps) > len(seen.heights):
+        missing = int(np.median(seen.missing[gaps]))
+        return (
+            f"the teeth stand about the axis in regular steps but for {missing} "
+            f"{'that is' if missing == 1 else 'that are'} missing"
+        )
+    return (
+        f"no regular teeth or flats: the outline wanders between diameters {2 * seen.low.min():.2f} "
+        f"and {2 * seen.high.max():.2f} mm in uneven steps"
     )
 
 
@@ -148,58 +195,6 @@ def _neither(reason: str, low: Floats, high: Floats) -> Outline:
     return Outline(
         form=Form.NEITHER, reason=reason, root_radius=float(low.min()), tip_radius=float(high.max())
     )
-
-
-def _midpoints(low: float, high: float, count: int) -> Floats:
-    return low + (high - low) * (np.arange(count) + 0.5) / count
-
-
-def _survey(solid: Solid, heights: Floats) -> tuple[Floats, Floats, Ints]:
-    """Return the outer outline's least and largest radius and its number of teeth, (k,) each."""
-    rows = []
-    for part in plane_segments_in_parts(solid, heights):
-        outer = outer_outlines(part)
-        low, high = radial_limits(outer)
-        rows.append((low, high, _counts(outer, (low + high) / 2)))
-    low, high, counts = (np.concatenate(column) for column in zip(*rows, strict=True))
-    return low, high, counts
-
-
-def _counts(sections: Segments, middles: Floats) -> Ints:
-    """Count regular teeth in every plane on its own circle; 0 where steps are uneven or the axis outside."""
-    crossings = circle_crossings(sections.scaled(1 / middles), np.ones(1))
-    flanks = np.maximum(np.bincount(crossings.plane, minlength=len(middles)), 2)
-    crossings = unfolded(crossings, NICK * 4 * math.pi / flanks[crossings.plane])
-    around = turns_about_axis(sections) > 0.5
-    counts = np.zeros(len(middles), dtype=np.int64)
-    for plane in np.flatnonzero(around):
-        rising = crossings.angle[(crossings.plane == plane) & ~crossings.left]  # sorted
-        if len(rising) >= 2:
-            pitch = 2 * math.pi / len(rising)
-            steps = np.diff(rising, append=rising[0] + 2 * math.pi)
-            if np.abs(steps - pitch).max() < 0.25 * pitch:
-                counts[plane] = len(rising)
-    return counts
-
-
-def phase_sums(crossings: Crossings, count: int, place: Ints, places: int) -> tuple[Complexes, Complexes]:
-    """Sum exp(i count angle) of the left and the right flanks that fall on each place (n,) of `places`.
-
-    The argument, divided by count, is the mean angle of the flanks within their pitch.
-    """
-    turn = np.exp(1j * count * crossings.angle)
-    sums = np.zeros((2, places), dtype=np.complex128)
-    np.add.at(sums, ((~crossings.left).astype(np.int64), place), turn)
-    return sums[0], sums[1]
-
-
-def _longest_run(counts: np.ndarray) -> tuple[int, int]:
-    """Return first and last index of the longest run of one count above zero."""
-    edges = np.flatnonzero(np.diff(counts, prepend=-1, append=-1))
-    runs = [(last - first, first, last - 1) for first, last in pairwise(edges)]
-    toothed = [run for run in runs if counts[run[1]] > 0] or runs
-    _, first, last = max(toothed)
-    return int(first), int(last)
 
 
 def _full_depth(low: Floats, depth: Floats, first: int, last: int) -> Ints:
@@ -220,7 +215,7 @@ def _full_depth(low: Floats, depth: Floats, first: int, last: int) -> Ints:
 
 def _stretch(run: Ints, chosen: np.ndarray) -> Ints:
     """Return the longest stretch of a run whose members are chosen."""
-    start, end = _longest_run(chosen.astype(np.int64))
+    start, end = longest_run(chosen.astype(np.int64))
     return run[start : end + 1]
 
 
@@ -231,19 +226,3 @@ def _form(count: int, root: float, tip: float) -> Form:
     if dip >= 0.15:
         return Form.GEAR
     return Form.POLYGON if count <= MOST_SIDES else Form.NEITHER
-
-
-def _twist(solid: Solid, count: int, low: float, high: float, radius: float) -> tuple[float, float]:
-    """Return twist [rad/mm] and a tooth centre's phase [rad] at mid-height, from sections close together."""
-    pitch = 2 * math.pi * radius / count
-    # below 45° a quarter pitch of height turns the teeth by less than half a pitch: no ambiguity
-    planes = int(np.clip(math.ceil(4 * (high - low) / pitch), 33, 2000))
-    heights = _midpoints(low, high, planes)
-    segments = plane_segments(solid, heights, radius=radius)
-    crossings = unfolded(circle_crossings(segments, np.array([radius])), FOLD * 2 * math.pi / count)
-    left, right = phase_sums(crossings, count, crossings.plane, planes)
-    # half way from each right flank on to the left flank of the same tooth
-    thickness = np.mod(np.angle(left * right.conj()), 2 * math.pi)
-    centre = np.unwrap(np.angle(right) + thickness / 2) / count
-    slope, offset = np.polyfit(heights - (low + high) / 2, centre, 1)
-    return float(slope), float(offset)
