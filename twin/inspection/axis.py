@@ -19,6 +19,8 @@ ROUND = 0.6
 """part of the faces looking inward that must lie on one cylinder to be a bore"""
 WIDE = math.radians(60.0)
 """a bore may be broken by a keyway of no more than this"""
+STEP = 0.25
+"""radii of a bore farther apart than this [mm] are steps of it"""
 SLABS = 20
 """heights at which the tip of every tooth is looked for"""
 SPREAD = 4.0
@@ -37,8 +39,9 @@ def find_axis(solid: Solid, outline: Outline) -> Axis:
     """
     points = _bore(solid, outline)
     if points is not None:
-        axis, kept = _cylinder(points, "bore")
-        if np.count_nonzero(kept) >= ROUND * len(points) and _surrounded(points[kept]):
+        step = _longest_step(points)
+        axis, kept = _cylinder(step, "bore")
+        if np.count_nonzero(kept) >= ROUND * len(step) and _surrounded(step[kept]):
             return axis
     if outline.form is Form.NEITHER:
         raise PartError(f"no bore and no tips to find an axis by: {outline.reason}")
@@ -82,6 +85,16 @@ def _bore(solid: Solid, outline: Outline) -> Floats | None:
     return points if _surrounded(points) else None
 
 
+def _longest_step(points: Floats) -> Floats:
+    """Return those points (n, 3) that lie on the longest cylinder of a bore in steps: all, if it has none."""
+    radius = np.hypot(points[:, 0], points[:, 1])
+    order = np.argsort(radius)
+    # the axis may stand off and lean a little: steps are higher than that
+    starts = np.flatnonzero(np.diff(radius[order], prepend=-np.inf) > STEP)
+    steps = np.split(order, starts[1:])
+    return points[max(steps, key=lambda rows: (float(np.ptp(points[rows, 2])), len(rows)))]
+
+
 def _surrounded(points: Floats) -> bool:
     """Whether points (n, 3) stand all round the axis."""
     angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
@@ -90,10 +103,7 @@ def _surrounded(points: Floats) -> bool:
 
 def _tips(solid: Solid, outline: Outline) -> Floats:
     """Return the outermost corner (n, 3) of every tooth, or polygon's corner, at several heights."""
-    z = solid.vertices[:, 2]
-    points = solid.vertices[(z >= outline.low) & (z <= outline.high)]
-    if len(points) == 0 or np.ptp(points[:, 2]) < 0.5 * (outline.high - outline.low):
-        points = points_between(solid, outline.low, outline.high, planes=SLABS)
+    points = points_between(solid, outline.low, outline.high)
     x, y, z = points.T
     angle = np.arctan2(y, x) - outline.phase - outline.twist * (z - outline.middle)
     sector = np.round(angle * outline.count / (2 * math.pi)).astype(np.int64) % outline.count

@@ -9,6 +9,7 @@ import numpy as np
 
 from twin.errors import InputError
 from twin.inspection.balls import choose_ball, measure_balls, over_balls
+from twin.inspection.damage import holes
 from twin.inspection.fit import Found, as_nominal, hand
 from twin.inspection.flanks import Measured, measure_flanks, usual_teeth
 from twin.inspection.involute import Involute, geometry
@@ -113,7 +114,7 @@ def measure_gear(
         ball_depth_um=sizes.ball_depth_um,
         uncertainty=sizes.uncertainty,
     )
-    return result, unmeasured
+    return result, holes(result, traced) | unmeasured
 
 
 def _chosen(teeth: Sequence[int] | Literal["all"] | None, count: int) -> tuple[int, ...]:

@@ -9,15 +9,16 @@ from numpy.typing import ArrayLike
 from twin.errors import InputError, PartError
 from twin.inspection.axis import find_axis, straightened
 from twin.inspection.bodies import separate_bodies
+from twin.inspection.damage import FLANK_LIMIT, destroyed
 from twin.inspection.fit import find_gear
 from twin.inspection.gear import measure_gear
 from twin.inspection.identity import name_of, other_unit, unlike
 from twin.inspection.involute import geometry
-from twin.inspection.judge_gear import FLANK_LIMIT, judge_gear
+from twin.inspection.judge_gear import judge_gear
 from twin.inspection.judge_polygon import judge_polygon
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.inspection.recognise import MOST_SIDES, Form, Outline, recognise
-from twin.inspection.result import GearResult, Inspection, Verdict
+from twin.inspection.result import Inspection, Verdict
 from twin.inspection.solid import Solid, check_solid
 from twin.inspection.tolerances import across_flats_limits
 
@@ -134,24 +135,13 @@ def _inspect_gear(
     if difference:
         return _nothing(f"{difference} (found: {found})", nominal)
     gear, unmeasured = measure_gear(solid, outline, found, nominal, teeth)
-    ruined = _ruined(gear)
+    ruined = destroyed(gear)
     if ruined:
         return _nothing(ruined, nominal)
     gear, verdict, findings = judge_gear(gear, nominal, whole=outline.whole, unmeasured=unmeasured)
     return Inspection(
         gear=gear, nominal=nominal, verdict=verdict, findings=tuple(findings), unmeasured=unmeasured
     )
-
-
-def _ruined(gear: GearResult) -> str:
-    """Say why these are no flanks; empty if they are."""
-    traces = [t for flank in (gear.left, gear.right) for t in (*flank.profile, *flank.helix)]
-    if not traces:
-        return "no tooth has a flank that can be traced: the teeth are destroyed"
-    worst = max(t.total_um for t in traces) / 1000
-    if worst > FLANK_LIMIT * gear.reference.normal_module_mm:
-        return f"flanks stray up to {worst:.3f} mm from the involute: the teeth are destroyed"
-    return ""
 
 
 def _inspect_polygon(solid: Solid, outline: Outline, nominal: PolygonNominal | None) -> Inspection:

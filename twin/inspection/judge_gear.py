@@ -3,13 +3,12 @@
 import math
 from dataclasses import replace
 
+from twin.inspection.damage import damaged
 from twin.inspection.involute import geometry
 from twin.inspection.nominal import GearNominal
-from twin.inspection.result import Figures, GearResult, Trace, Verdict
+from twin.inspection.result import Figures, Flank, GearResult, Trace, Verdict
 from twin.inspection.tolerances import GearSize, class_reached, gear_tolerance, outside_standard
 
-FLANK_LIMIT = 0.1
-"""flanks farther off than this, in modules, are no flanks of the named gear"""
 OFFSET_LIMIT = 0.05
 """flanks farther off than this, in modules, and the gear does not mesh as it should"""
 TIP_LIMIT = 0.1
@@ -43,28 +42,32 @@ _WORDS = {
 
 
 def worst_values(gear: GearResult, *, filtered: bool = False) -> dict[str, float]:
-    """Return for each item of ISO 1328-1 the largest |value| [µm] of both sides, as far as measured.
+    """Return for each item of ISO 1328-1 the largest |value| [µm] of both sides, where both were measured.
 
     `filtered` takes profile and helix behind the Gaussian filter; pitch has none.
     """
-    values: dict[str, float] = {}
-    for flank in (gear.left, gear.right):
-        items = {
-            "profile_slope": _steepest(flank.profile, filtered=filtered),
-            "profile_form": flank.profile_form_um,
-            "profile_total": flank.profile_total_um,
-            "helix_slope": _steepest(flank.helix, filtered=filtered),
-            "helix_form": flank.helix_form_um,
-            "helix_total": flank.helix_total_um,
-        }
-        if filtered:
-            items |= {item: flank.filtered.get(f"{item}_um") for item in items if not item.endswith("slope")}
-        items = {item: None if getattr(flank, f"{item}_um") is None else v for item, v in items.items()}
-        items |= {"single_pitch": flank.single_pitch_um, "cumulative_pitch": flank.cumulative_pitch_um}
-        for item, value in items.items():
-            if value is not None:
-                values[item] = max(values.get(item, 0.0), value)
-    return values
+    sides = [_values(flank, filtered=filtered) for flank in (gear.left, gear.right)]
+    return {
+        item: max(one, other)
+        for (item, one), other in zip(sides[0].items(), sides[1].values(), strict=True)
+        if one is not None and other is not None
+    }
+
+
+def _values(flank: Flank, *, filtered: bool) -> dict[str, float | None]:
+    """Return the items of one side; None: not measured."""
+    items = {
+        "profile_slope": _steepest(flank.profile, filtered=filtered),
+        "profile_form": flank.profile_form_um,
+        "profile_total": flank.profile_total_um,
+        "helix_slope": _steepest(flank.helix, filtered=filtered),
+        "helix_form": flank.helix_form_um,
+        "helix_total": flank.helix_total_um,
+    }
+    if filtered:
+        items |= {item: flank.filtered.get(f"{item}_um") for item in items if not item.endswith("slope")}
+    items = {item: None if getattr(flank, f"{item}_um") is None else v for item, v in items.items()}
+    return items | {"single_pitch": flank.single_pitch_um, "cumulative_pitch": flank.cumulative_pitch_um}
 
 
 def _steepest(traces: tuple[Trace, ...], *, filtered: bool) -> float:
@@ -129,7 +132,7 @@ def judge_gear(
     """Return the gear with its classes, the verdict and the findings, most important first."""
     result, exceeded = grade_gear(gear)
     classes = result.accuracy_class
-    wrong = _unfinished(gear, nominal, whole=whole)
+    wrong = _unfinished(gear, nominal, whole=whole) + damaged(gear)
     notes: list[str] = []
     if nominal is None:
         if wrong:

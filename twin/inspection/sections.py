@@ -15,6 +15,10 @@ from twin.inspection.solid import Floats, Ints, Solid
 
 PART = 1_000_000
 """about so many segments are handled at a time"""
+BETWEEN = 20
+"""heights between two others at which points are taken"""
+EDGE = 1e-4
+"""part of the height that is no more between"""
 FOLD = 0.005
 """flanks crossed twice or more within this part of a pitch are folded there, where cuts meet"""
 
@@ -122,14 +126,20 @@ def plane_segments_in_parts(solid: Solid, heights: Floats) -> Iterator[Segments]
         yield plane_segments(solid, heights[part == number])
 
 
-def points_between(solid: Solid, low: float, high: float, *, planes: int = 9) -> Floats:
-    """Return points (n, 3) of a solid's edges at heights between low and high [mm].
+def points_between(solid: Solid, low: float, high: float) -> Floats:
+    """Return points (n, 3) of a solid's surface between two heights [mm]: its vertices, if it ends there.
 
-    For where a mesh has no vertices of its own, its faces running on beyond the heights looked at.
+    Where it goes on, in a shaft or a collar, what stands at the heights themselves is not between them, and
+    faces may run past without a vertex: then vertices in between and points of edges at several heights.
     """
-    heights = low + (high - low) * (np.arange(planes) + 0.5) / planes
+    z = solid.vertices[:, 2]
+    if low <= z.min() and high >= z.max():
+        return solid.vertices
+    edge = EDGE * (high - low)
+    heights = low + (high - low) * (np.arange(BETWEEN) + 0.5) / BETWEEN
     segments = plane_segments(solid, heights)
-    return np.column_stack([segments.start, heights[segments.plane]])
+    crossed = np.column_stack([segments.start, heights[segments.plane]])
+    return np.concatenate([solid.vertices[(z > low + edge) & (z < high - edge)], crossed])
 
 
 def circle_crossings(segments: Segments, radii: Floats) -> Crossings:

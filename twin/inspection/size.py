@@ -8,28 +8,19 @@ from twin.inspection.reading import Placed
 from twin.inspection.sections import points_between
 from twin.inspection.solid import Floats, Ints, Solid
 
+FACING = 0.1
+"""[rad] a flank touches a jaw where it faces it up to this"""
+
 
 def tip_and_root_radii(solid: Solid, placed: Placed, *, root_radius: float) -> tuple[Floats, Floats]:
     """Return the largest radius of every tooth and the smallest of every gap, (z,) each [mm].
 
     `root_radius` [mm] is about where the gaps end: what lies well inside, a bore, is left out.
     """
-    z = solid.vertices[:, 2]
-    inside = solid.vertices[(z >= placed.low) & (z <= placed.high)]
-    tips, gaps = _extremes(inside, placed, least=0.95 * root_radius)
-    if not (np.isfinite(tips).all() and np.isfinite(gaps).all()):
-        between = points_between(solid, placed.low, placed.high)
-        more = _extremes(between, placed, least=0.95 * root_radius)
-        tips, gaps = (
-            np.where(np.isfinite(one), one, other) for one, other in zip((tips, gaps), more, strict=True)
-        )
-    return tips, gaps
-
-
-def _extremes(points: Floats, placed: Placed, *, least: float) -> tuple[Floats, Floats]:
-    """Return the largest radius of every tooth and the smallest of every gap (z,); infinite: none."""
+    points = points_between(solid, placed.low, placed.high)
     radius = np.hypot(points[:, 0], points[:, 1])
-    points, radius = points[radius >= least], radius[radius >= least]
+    outer = radius >= 0.95 * root_radius
+    points, radius = points[outer], radius[outer]
     angle = placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2])
     teeth = placed.gear.teeth
     tips = np.full(teeth, -np.inf)
@@ -47,7 +38,8 @@ def measure_span(
     `form_radius` and `tip_radius` [mm] are where the usable flanks begin and end.
 
     Two parallel planes, inclined by the base helix angle and square to the middle of the group, are closed
-    on the outer flanks until they touch.
+    on the outer flanks until they touch where these face them: the teeth of a wide helical gear turn away
+    from the jaws, and through their planes again.
     """
     gear = placed.gear
     if k > gear.teeth / 2:
@@ -55,14 +47,12 @@ def measure_span(
     needed = gear.span(k) * math.sin(abs(gear.base_helix))
     if placed.high - placed.low <= needed:
         return None, f"the span over {k} teeth of this helix needs a face wider than {needed:.2f} mm"
-    z = solid.vertices[:, 2]
-    points, ends = _by_flank(
-        solid.vertices[(z >= placed.low) & (z <= placed.high)], placed, form_radius, tip_radius
-    )
-    if (np.diff(ends) == 0).any():
-        between = points_between(solid, placed.low, placed.high)
-        points, ends = _by_flank(between, placed, form_radius, tip_radius)
+    points, ends = _by_flank(points_between(solid, placed.low, placed.high), placed, form_radius, tip_radius)
     radius = np.hypot(points[:, 0], points[:, 1])
+    side = np.repeat(np.tile([-1.0, 1.0], gear.teeth), np.diff(ends))
+    facing = np.arctan2(points[:, 1], points[:, 0]) + side * np.arcsin(
+        np.minimum(gear.base_radius / radius, 1.0)
+    )
     spans = []
     for first in range(gear.teeth):
         middle = placed.phase - 2 * math.pi * (first + (k - 1) / 2) / gear.teeth + math.pi / 2
@@ -76,12 +66,14 @@ def measure_span(
         last = (first + k - 1) % gear.teeth
         sides = (slice(*ends[2 * first + 1 : 2 * first + 3]), slice(*ends[2 * last : 2 * last + 2]))
         span = 0.0
-        for side, sense in zip(sides, (1.0, -1.0), strict=True):
-            reach = sense * (points[side] @ normal)
-            if len(reach) == 0:
+        for flank, towards, sense in zip(sides, (middle, middle + math.pi), (1.0, -1.0), strict=True):
+            if flank.start == flank.stop:
                 return None, f"tooth {first + 1} or {last + 1} has no flank to touch"
+            away = np.abs(np.mod(facing[flank] - towards + math.pi, 2 * math.pi) - math.pi)
+            near = flank.start + np.flatnonzero(away <= max(FACING, 2 * float(away.min())))
+            reach = sense * (points[near] @ normal)
             touch = int(np.argmax(reach))
-            if radius[side][touch] > tip_radius - 0.02 * gear.module:
+            if radius[near[touch]] > tip_radius - 0.02 * gear.module:
                 return None, f"jaws over {k} teeth touch the tips, not the flanks"
             span += float(reach[touch])
         spans.append(span)

@@ -13,6 +13,8 @@ Complexes = NDArray[np.complex128]
 
 BENT = 0.02
 """part of a pitch by which the teeth of one helix leave a straight line at most"""
+SPLITS = 33
+"""places tried where the teeth may turn back"""
 STRAIGHT = 0.1
 """part of the squares about one line that is left about two, where teeth turn back"""
 
@@ -50,19 +52,16 @@ def turning(solid: Solid, count: int, low: float, high: float, radius: float) ->
 
 def _turns_back(heights: Floats, centre: Floats) -> float | None:
     """Return the height from which teeth that turned one way turn the other, if two lines say so."""
-    best = None
-    for split in np.linspace(0.1, 0.9, 33):
-        k = round(split * len(heights))
-        parts = [
-            np.polyfit(h, c, 1, full=True) for h, c in ((heights[:k], centre[:k]), (heights[k:], centre[k:]))
-        ]
-        rest = sum(float(residue.sum()) for _, residue, *_ in parts)
-        if best is None or rest < best[0]:
-            best = (rest, parts[0][0][0], parts[1][0][0], float(heights[k]))
-    whole = np.polyfit(heights, centre, 1, full=True)[1].sum()
-    if best is None or best[0] > STRAIGHT * whole or best[1] * best[2] >= 0:
+    tries = []
+    for k in (np.linspace(0.1, 0.9, SPLITS) * len(heights)).astype(np.int64):
+        parts = (slice(None, k), slice(k, None))
+        fits = [np.polyfit(heights[part], centre[part], 1, full=True)[:2] for part in parts]
+        tries.append((sum(float(rest.sum()) for _, rest in fits), int(k), *(line for line, _ in fits)))
+    rest, k, below, above = min(tries, key=lambda one: one[0])
+    if below[0] * above[0] >= 0 or rest > STRAIGHT * np.polyfit(heights, centre, 1, full=True)[1].sum():
         return None
-    return best[3]
+    meeting = (below[1] - above[1]) / (above[0] - below[0])
+    return float(np.clip(meeting, *heights[[max(k - 2, 0), min(k + 1, len(heights) - 1)]]))
 
 
 def phase_sums(crossings: Crossings, count: int, place: Ints, places: int) -> tuple[Complexes, Complexes]:

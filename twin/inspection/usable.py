@@ -161,7 +161,8 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
     start_at = int(first[np.abs(first - np.median(first)) <= near].max(initial=0))
     end_at = int(last[np.abs(last - np.median(last)) <= near].min(initial=POINTS - 1))
     step = roll[1] - roll[0]
-    start, end, undercut = form, tip, gear.undercut
+    start, end = form, tip
+    undercut = gear.undercut and _lacks_below(roll, flanks, form)
     if end_at < POINTS - 1 - BASE:
         end = float(roll[end_at])
     if start_at > 0 and roll[start_at] > form + (2 * BASE + 1) * step:
@@ -173,6 +174,16 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
     if corner is not None:
         start, undercut = float(corner + step), True
     return Usable(start=start, end=end, undercut=undercut, chamfered=end < tip)
+
+
+def _lacks_below(roll: Floats, flanks: Floats, form: float) -> bool:
+    """Whether the usual flank of (n, m) lacks material below the roll length `form` [mm], or ends there."""
+    usual = _median(flanks)
+    below, above = usual[roll < form], usual[roll >= form]
+    if len(below) == 0 or not np.isfinite(above[0]):
+        return False
+    seen = below[np.isfinite(below)]
+    return len(seen) < len(below) or bool((above[0] - seen).max() > LACKING[0])
 
 
 def _median(flanks: Floats) -> Floats:
