@@ -16,6 +16,7 @@ def components(count: int, first: Ints, second: Ints) -> Ints:
             return (np.cumsum(label == np.arange(count)) - 1)[label]
         # only edges between different trees are looked at again, each hooks the higher root on the lower
         first, second, a, b = first[apart], second[apart], a[apart], b[apart]
-        np.minimum.at(label, np.maximum(a, b), np.minimum(a, b))
+        # of several edges of one tree any may win: the next turn looks at the others again
+        label[np.maximum(a, b)] = np.minimum(a, b)
         while not np.array_equal(above := label[label], label):
             label = above

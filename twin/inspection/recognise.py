@@ -17,8 +17,8 @@ from twin.inspection.turning import turning
 
 PLANES = 48
 """sections taken over the length of the part"""
-FEWEST_PLANES = 12
-MOST_CROSSINGS = 1e6
+FEWEST_PLANES = 24
+MOST_CROSSINGS = 2.5e5
 """fewer sections are taken of parts whose faces run all along them, so that this many are crossed"""
 FEWEST = 5
 """sections in a row that must be alike"""

@@ -88,6 +88,6 @@ def _by_flank(points: Floats, placed: Placed, low: float, high: float) -> tuple[
     radius = np.hypot(points[:, 0], points[:, 1])
     points = points[(radius >= low) & (radius <= high)]
     tooth, offset = placed.tooth(placed.turned_back(np.arctan2(points[:, 1], points[:, 0]), points[:, 2]))
-    flank = 2 * tooth + (offset > 0)
+    flank = (2 * tooth + (offset > 0)).astype(np.uint16)  # no more than 20 000, and sorted by digits
     order = np.argsort(flank, kind="stable")
     return points[order], np.searchsorted(flank[order], np.arange(2 * placed.gear.teeth + 1))

@@ -81,9 +81,10 @@ def solid_of(
 
     Raises MeshError if it encloses no volume.
     """
-    x, y, z = (_at_corners(values, triangles) for values in points.T)
+    corners = np.ascontiguousarray(triangles.T)
+    x, y, z = (np.ascontiguousarray(values).take(corners) for values in points.T)
     low, high = np.minimum.reduce(z), np.maximum.reduce(z)
-    squares = [a * a + b * b for a, b in zip(x, y, strict=True)]
+    squares = x * x + y * y
     near, far = np.minimum.reduce(squares), np.maximum.reduce(squares)
     sides = [(x[i] - x[j], y[i] - y[j]) for i, j in ((1, 0), (2, 0), (2, 1))]
     longest = np.maximum.reduce([a * a + b * b for a, b in sides])
@@ -121,12 +122,6 @@ def check_finite(points: Floats) -> None:
         raise MeshError(f"mesh: coordinates reach {reach:.3g} mm", remedy=f"valid: up to {LARGEST:g} mm")
 
 
-def _at_corners(values: Floats, faces: Ints) -> list[Floats]:
-    """Return a value (n,) of vertices at the three corners of each face, (m,) each."""
-    values = np.ascontiguousarray(values)
-    return [values[faces[:, i]] for i in range(3)]
-
-
 def _array(value: ArrayLike, name: str, dtype: type[np.generic]) -> NDArray:
     try:
         array = np.asarray(value)
@@ -160,17 +155,26 @@ def _without_doubled(faces: Ints) -> Ints:
     return faces[np.sort(np.unique(turned, axis=0, return_index=True)[1])]
 
 
+def _by_number(number: Ints, face: Ints) -> tuple[Ints, Ints]:
+    """Sort the numbers (n,) of edges, and the faces (n,) they belong to with them."""
+    bits = int(face.max(initial=1)).bit_length()
+    if int(number.max(initial=1)).bit_length() + bits > 63:
+        order = np.argsort(number)
+        return number[order], face[order]
+    # both in one word: values sort several times faster than places
+    packed = np.sort((number << bits) | face)
+    return packed >> bits, packed & ((1 << bits) - 1)
+
+
 def _neighbours(faces: Ints, vertex_count: int) -> tuple[Ints, Ints]:
     """Pair the faces on both sides of every edge: it is passed once in each sense, or the mesh is refused."""
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    face = np.repeat(np.arange(len(faces)), 3)
     up = start < end
-    sides = []
-    for low, high, passed in ((start, end, up), (end, start, ~up)):
-        edge = np.flatnonzero(passed)
-        number = low[edge] * vertex_count + high[edge]
-        order = np.argsort(number)
-        sides.append((number[order], edge[order] // 3))
-    (rising, first), (falling, second) = sides
+    (rising, first), (falling, second) = (
+        _by_number(low[passed] * vertex_count + high[passed], face[passed])
+        for low, high, passed in ((start, end, up), (end, start, ~up))
+    )
     if len(rising) == len(falling) and np.array_equal(rising, falling) and (np.diff(rising) > 0).all():
         return first, second
     doubled = sum(int(np.count_nonzero(np.diff(number) == 0)) for number in (rising, falling))

