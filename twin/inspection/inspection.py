@@ -1,6 +1,7 @@
 """One inspection from mesh to verdict."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Literal
 
@@ -52,11 +53,13 @@ def inspect(
     """
     _check_nominal(nominal, pressure_deg)
     solid = check_solid(vertices, faces)
-    bodies = separate_bodies(solid)
+    wanted = _count(nominal)
+    with ThreadPoolExecutor(1) as beside:  # numpy leaves the interpreter free most of the time
+        counted = beside.submit(separate_bodies, solid)
+        outline = recognise(solid, wanted=wanted)
+        bodies = counted.result()
     if bodies > 1:
         return _nothing(f"the mesh holds {bodies} separate bodies, a part is one", nominal)
-    wanted = _count(nominal)
-    outline = recognise(solid, wanted=wanted)
     axis = None
     if own_axis:
         try:

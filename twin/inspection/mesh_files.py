@@ -1,32 +1,19 @@
 """Meshes from files, in millimetres, equal vertices joined."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.errors import InputError, Place
-from twin.inspection.formats.glb import read_glb
-from twin.inspection.formats.obj import read_obj
 from twin.inspection.formats.others import read_other
-from twin.inspection.formats.package import read_3mf
-from twin.inspection.formats.ply import read_ply
 from twin.inspection.formats.raw import DamagedError, Raw
-from twin.inspection.formats.stl import read_stl
 from twin.inspection.solid import Floats, Ints
 from twin.inspection.units import DECLARED, MILLIMETRES
 
 FORMATS = {".stl": "STL", ".obj": "OBJ", ".ply": "PLY", ".3mf": "3MF", ".glb": "GLB", ".gltf": "glTF"}
 """suffix -> name"""
-READERS: dict[str, Callable[[Path], Raw | None]] = {
-    ".stl": read_stl,
-    ".obj": read_obj,
-    ".ply": read_ply,
-    ".3mf": read_3mf,
-    ".glb": read_glb,
-}
-"""suffix -> the short way; trimesh, three to five times slower and half a second to load, reads the rest"""
 MIX = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
 """odd multipliers that spread the bits of x, y and z over one word"""
 
@@ -54,8 +41,7 @@ def read_mesh(path: Path, unit: str | None = None) -> tuple[Floats, Ints]:
             remedy=f"valid: {', '.join(FORMATS)}",
         )
     try:
-        read = READERS.get(suffix)
-        raw = (read(path) if read else None) or read_other(path)
+        raw = short_way(path) or read_other(path)
     except DamagedError as fault:
         raise InputError(f"not a readable mesh: {fault}", place=place) from fault
     except OSError as fault:
@@ -78,6 +64,28 @@ def read_mesh(path: Path, unit: str | None = None) -> tuple[Floats, Ints]:
         )
     points, index = joined(vertices)
     return points * factor, index.reshape(-1, 3) if faces is None else index[faces]
+
+
+def short_way(path: Path) -> Raw | None:
+    """Read a file by the module for its suffix, none of the others loaded.
+
+    None where that leaves it to trimesh, which takes three to five times longer, and half a second to load.
+    Raises DamagedError.
+    """
+    match path.suffix.lower():
+        case ".stl":
+            from twin.inspection.formats.stl import read_stl as read  # noqa: PLC0415
+        case ".obj":
+            from twin.inspection.formats.obj import read_obj as read  # noqa: PLC0415
+        case ".ply":
+            from twin.inspection.formats.ply import read_ply as read  # noqa: PLC0415
+        case ".3mf":
+            from twin.inspection.formats.package import read_3mf as read  # noqa: PLC0415
+        case ".glb":
+            from twin.inspection.formats.glb import read_glb as read  # noqa: PLC0415
+        case _:
+            return None
+    return read(path)
 
 
 def joined(vertices: np.ndarray) -> tuple[Floats, Ints]:

@@ -1,5 +1,6 @@
 """The solid to be measured: a closed, oriented mesh, checked once so that the rest may rely on it."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,16 +63,18 @@ def check_solid(vertices: ArrayLike, faces: ArrayLike) -> Solid:
             f"valid are 0 to {len(points) - 1}"
         )
     triangles, mended = _without_degenerate(triangles)
-    try:
-        neighbours = _neighbours(triangles, len(points))
-    except MeshError:
-        single = _without_doubled(triangles)
-        doubled = len(triangles) - len(single)
-        if not doubled:
-            raise
-        mended.append(f"{doubled} doubled faces were left out")
-        triangles, neighbours = single, _neighbours(single, len(points))
-    return solid_of(points, triangles, neighbours, tuple(mended))
+    with ThreadPoolExecutor(1) as beside:  # numpy leaves the interpreter free most of the time
+        measured = beside.submit(_limits, points, triangles)
+        try:
+            neighbours = _neighbours(triangles, len(points))
+        except MeshError:
+            single = _without_doubled(triangles)
+            doubled = len(triangles) - len(single)
+            if not doubled:
+                raise
+            mended.append(f"{doubled} doubled faces were left out")
+            return solid_of(points, single, _neighbours(single, len(points)), tuple(mended))
+        return _solid(points, triangles, neighbours, tuple(mended), measured.result())
 
 
 def solid_of(
@@ -81,29 +84,53 @@ def solid_of(
 
     Raises MeshError if it encloses no volume.
     """
+    return _solid(points, triangles, neighbours, mended, _limits(points, triangles))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Limits:
+    """What can be said of faces without their neighbours: see `Solid`."""
+
+    low: Floats
+    high: Floats
+    near: Floats
+    far: Floats
+    volume: float
+
+
+def _limits(points: Floats, triangles: Ints) -> _Limits:
     corners = np.ascontiguousarray(triangles.T)
     x, y, z = (np.ascontiguousarray(values).take(corners) for values in points.T)
-    low, high = np.minimum.reduce(z), np.maximum.reduce(z)
     squares = x * x + y * y
-    near, far = np.minimum.reduce(squares), np.maximum.reduce(squares)
     sides = [(x[i] - x[j], y[i] - y[j]) for i, j in ((1, 0), (2, 0), (2, 1))]
     longest = np.maximum.reduce([a * a + b * b for a, b in sides])
     # columns under the faces; from the middle, so that little is lost where a part stands far up
     shadow = sides[0][0] * sides[1][1] - sides[1][0] * sides[0][1]
-    volume = float(shadow @ (z[0] + z[1] + z[2] - 3 * z[0].mean())) / 6
-    if volume == 0.0:
+    return _Limits(
+        low=np.minimum.reduce(z),
+        high=np.maximum.reduce(z),
+        # a chord of length l between points outside R comes no nearer than sqrt(R^2 - l^2/4)
+        near=np.minimum.reduce(squares) - longest / 4,
+        far=np.maximum.reduce(squares),
+        volume=float(shadow @ (z[0] + z[1] + z[2] - 3 * z[0].mean())) / 6,
+    )
+
+
+def _solid(
+    points: Floats, triangles: Ints, neighbours: tuple[Ints, Ints], mended: tuple[str, ...], limits: _Limits
+) -> Solid:
+    if limits.volume == 0.0:
         raise MeshError("mesh: it encloses no volume")
-    if volume < 0.0:
+    if limits.volume < 0.0:
         triangles = np.ascontiguousarray(triangles[:, ::-1])
         mended = (*mended, "the mesh came inside out and was turned")
     return Solid(
         vertices=points,
         faces=triangles,
-        face_low=low,
-        face_high=high,
-        # a chord of length l between points outside R comes no nearer than sqrt(R^2 - l^2/4)
-        face_near=near - longest / 4,
-        face_far=far,
+        face_low=limits.low,
+        face_high=limits.high,
+        face_near=limits.near,
+        face_far=limits.far,
         neighbours=neighbours,
         mended=mended,
     )

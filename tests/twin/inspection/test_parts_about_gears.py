@@ -96,7 +96,7 @@ def test_double_helix_is_named(parts, named, helix_deg):
     for nominal in (None, named(helix_deg=helix_deg)):
         result = inspect(*mesh, nominal)
         assert result.kind is None
-        assert "20 teeth turn one way up to z = 0.0 mm and the other way" in result.reason
+        assert "20 teeth turn one way up to z = 0 mm and the other way" in result.reason
 
 
 def test_a_missing_tooth_is_named(spur, named):
