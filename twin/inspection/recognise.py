@@ -121,8 +121,8 @@ def _outline(
     turns = turning(solid, count, z_low, z_high, (root + tip) / 2)
     if turns.back_at is not None:
         return _neither(
-            f"{count} teeth turn one way up to z = {round(turns.back_at, 1) + 0.0:g} mm and the other way from there on: "
-            "a double helix, or two gears; one helix is measured at a time",
+            f"{count} teeth turn one way up to z = {round(turns.back_at, 1) + 0.0:g} mm and the other way "
+            "from there on: a double helix, or two gears; one helix is measured at a time",
             seen.low,
             seen.high,
         )
