@@ -35,6 +35,8 @@ LACKING = (1e-3, 5.0)
 """an undercut is deeper at the start than this [mm] and than so many times the band of the flank above"""
 CORNER = (1e-4, 1.5)
 """and begins where this [mm] or so many times that band lacks"""
+GOES_ON = 1e-5
+"""a flank that lacks less than this [mm] below where the nominal's undercut begins has none"""
 UNDERCUT = 0.01
 """an undercut lacks more than this against the roll length down to the start: half a degree"""
 
@@ -152,8 +154,11 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
         return whole
     roll = np.linspace(lowest, lowest + 0.998 * (tip - lowest), POINTS)
     read = read_flanks(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
-    flanks = np.concatenate(read.deviation[:, 0].transpose(0, 2, 1)) / 1000
-    flanks = flanks[np.isfinite(flanks).sum(axis=1) > POINTS / 2]
+    flanks, facets = (
+        np.concatenate(table[:, 0].transpose(0, 2, 1)) / 1000 for table in (read.deviation, read.facet)
+    )
+    whole_ones = np.isfinite(flanks).sum(axis=1) > POINTS / 2
+    flanks, facets = flanks[whole_ones], facets[whole_ones]
     if len(flanks) == 0:
         return whole
     first, last = steep_ends(roll, flanks)
@@ -162,7 +167,7 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
     end_at = int(last[np.abs(last - np.median(last)) <= near].min(initial=POINTS - 1))
     step = roll[1] - roll[0]
     start, end = form, tip
-    undercut = gear.undercut and _lacks_below(roll, flanks, form)
+    undercut = gear.undercut and _lacks_below(roll, flanks - facets, form)
     if end_at < POINTS - 1 - BASE:
         end = float(roll[end_at])
     if start_at > 0 and roll[start_at] > form + (2 * BASE + 1) * step:
@@ -183,7 +188,7 @@ def _lacks_below(roll: Floats, flanks: Floats, form: float) -> bool:
     if len(below) == 0 or not np.isfinite(above[0]):
         return False
     seen = below[np.isfinite(below)]
-    return len(seen) < len(below) or bool((above[0] - seen).max() > LACKING[0])
+    return len(seen) < len(below) or bool((above[0] - seen).max() > GOES_ON)
 
 
 def _median(flanks: Floats) -> Floats:
