@@ -39,7 +39,7 @@ def test_no_box_within_the_limit_is_passed_over(seed):
         size=(300, 3, 3)
     )
     points, limit = 2 * rng.normal(size=(40, 3)), rng.exponential(1.0, 40)
-    point, triangle, bound = Boxes(corner).within(points.T, limit)
+    point, triangle, bound = Boxes(corner).within(points, limit)
     low, high = corner.min(axis=1), corner.max(axis=1)
     off = np.maximum(np.maximum(low[None] - points[:, None], points[:, None] - high[None]), 0)
     apart = np.linalg.norm(off, axis=2)
