@@ -39,6 +39,7 @@ _COMMON: dict[int, float] = {
     9001: 4,
     9003: -1,
     9004: 5,
+    9006: 0,
     **dict.fromkeys(SWITCH_NUMBERS, 0),
 }
 DELIVERED: dict[str, tuple[dict[int, float], dict[str, dict[str, float]]]] = {
