@@ -92,7 +92,7 @@ def cut(
         surface: Surface | None = regular.surface
         progress("checking", 0.8)
         errors, facets = check(sweep, regular.surface, blank)
-        notes += coarse(errors, facets)
+        notes += [*regular.notes, *coarse(errors, facets)]
     except IrregularError as why:
         made = _general(blank, sweep, grid, closest, progress)
         method, cells, pairs = f"general (cylindrical grid), for {why}", grid.cell_mm, made.pairs

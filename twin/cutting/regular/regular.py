@@ -30,12 +30,17 @@ MARK_SAG = 0.15e-3
 """[mm] by which a cell along the gap may sag in the feed marks, at a tolerance of 1 µm"""
 RIM = 1.5
 """Cells by which the charts reach out of the blank."""
+ROOM = 0.06
+"""Share of the tooth height by which the section is searched further out than the blank: the hob's land is
+an eighth of it above the tips."""
 FINEST = 4e-3
 """Share of the tooth height below which no cell is chosen."""
 ASTRAY = 0.1
 """Share of the shell's thickness by which a steady motion may stand off a screw."""
-LIMIT = 450_000
-"""Cells, of about 2 kB each at the peak, beyond which a cut is left to the general way."""
+BUDGET = 420_000
+"""Cells, of about 1.5 kB each at the peak, beyond which they are chosen coarser than the tolerance asks."""
+LIMIT = 700_000
+"""Cells beyond which a cut is left to the general way."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +52,7 @@ class Regular:
     """across and along the gaps"""
     pairs: int
     """pairs of block and bite evaluated in the search"""
+    notes: tuple[str, ...]
 
 
 def regular_cut(
@@ -66,12 +72,23 @@ def regular_cut(
     stock = StockCylinder.around(motion.mount, blank.radius, blank.z_range)
     indexing = find_indexing(cutter, motion, stock.radius)
     height = stock.radius - indexing.root
-    trial = Frame(indexing=indexing, stock=stock.radius, margin=max(0.04 * height, RIM * (cell_mm or 0.0)))
+    room = max(0.7 * ROOM * height, RIM * cell_mm) if cell_mm else ROOM * height
+    trial = Frame(indexing=indexing, stock=stock.radius, margin=room)
     found = section(sweep, trial, motion.mount, 0.5 * (stock.z_low + stock.z_high))
     across, along = cell_mm, 2.0 * (cell_mm or 0.0)
     if across is None:
         across = max(math.sqrt(8.0 * ROOT_SAG * tolerance_um / bend(found)), FINEST * height)
         along = math.sqrt(8.0 * MARK_SAG * tolerance_um * cutter.radius)
+    notes = ()
+    ways = float(np.hypot(*np.diff(found, axis=0).T).sum()), stock.z_high - stock.z_low
+    count = indexing.teeth * ways[0] / across * ways[1] / along
+    if count > BUDGET and cell_mm is None:
+        coarser = math.sqrt(count / BUDGET)
+        across, along = min(across * coarser, ROOM * height / RIM), along * coarser
+        notes = (
+            f"cells are {coarser:.2g} times as long as the tolerance asks for, to keep within the memory: "
+            f"facets keep to about {tolerance_um * coarser**2:.2g} µm on the flanks",
+        )
     thick = across
     tiling = Tiling.of((across, along), thick, cutter.radius, bend(found))
     frame = Frame(indexing=indexing, stock=stock.radius, margin=RIM * across)
@@ -92,7 +109,7 @@ def regular_cut(
     chart = chart_along(frame, motion.mount, surface, z, lift)
     proved = prove(sweep, chart, tiling, thick, screwed)
     made = skin(sweep, proved, thick)
-    return Regular(tubes(chart, made), (across, float(z[1] - z[0])), proved.pairs)
+    return Regular(tubes(chart, made), (across, float(z[1] - z[0])), proved.pairs, notes)
 
 
 def _screwed(

@@ -18,6 +18,10 @@ FLANK, ROOT = 16, 25
 """Trial rays of a flank, and into the root."""
 HALVINGS = 14
 NO_GAP = "there is no gap where the rolling of tool and work puts one"
+MIDDLE = 4.0
+"""Times less than where it is the largest is the curvature where steps are as long as asked for."""
+GRADES = 0.67, 1.3
+"""Least and most times as close as that."""
 THIN = 1e-3
 """Height of the section [mm]."""
 
@@ -73,10 +77,10 @@ def section(sweep: Sweep, frame: Frame, mount: RigidTransform, z: float) -> Floa
 
 
 def spaced(surface: Floats, outside: float, step: float, multiple: int) -> Floats:
-    """A section (n, 2) again, at equal steps of about `step` [mm], from `outside` to `outside` radius.
+    """A section (n, 2) again, at steps of about `step` [mm], from `outside` to `outside` radius.
 
-    The number of steps is a multiple of `multiple`. Raises IrregularError where the section does not reach
-    that far out.
+    Steps are shorter where the section bends most, and longer where it is straighter. Their number is a
+    multiple of `multiple`. Raises IrregularError where the section does not reach that far out.
     """
     radius = np.hypot(*surface.T)
     lowest = int(radius.argmin())
@@ -86,8 +90,20 @@ def spaced(surface: Floats, outside: float, step: float, multiple: int) -> Float
     first = int(np.flatnonzero(radius[:lowest] >= outside).max())
     last = lowest + int(np.flatnonzero(radius[lowest:] >= outside).min())
     ends = [_where(curve, outside, length[at], length[at + 1]) for at in (first, last - 1)]
-    count = multiple * math.ceil((ends[1] - ends[0]) / (step * multiple))
-    return np.asarray(curve(np.linspace(ends[0], ends[1], count + 1)), dtype=np.float64)
+    at = np.linspace(ends[0], ends[1], 8 * len(surface))
+    curvature = _curvature(curve, at)
+    close = np.sqrt(MIDDLE * _smooth(curvature, round(step / (at[1] - at[0]))) / curvature.max())
+    density = np.clip(close, *GRADES) / step
+    number = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(at))])
+    count = multiple * math.ceil(number[-1] / multiple)
+    return np.asarray(curve(np.interp(np.linspace(0.0, number[-1], count + 1), number, at)), dtype=np.float64)
+
+
+def _smooth(values: Floats, wide: int) -> Floats:
+    """Values (n,) averaged over twice `wide` neighbours."""
+    weight = np.ones(2 * max(wide, 1) + 1)
+    padded = np.pad(values, max(wide, 1), mode="edge")
+    return np.convolve(padded, weight / weight.sum(), mode="valid")
 
 
 def _where(curve: CubicSpline, radius: float, low: float, high: float) -> float:
@@ -102,9 +118,13 @@ def _where(curve: CubicSpline, radius: float, low: float, high: float) -> float:
 def bend(surface: Floats) -> float:
     """Largest curvature of a section (n, 2) [1/mm]."""
     length, curve = _curve(surface)
-    at = np.linspace(length[0], length[-1], 8 * len(surface))
+    return float(_curvature(curve, np.linspace(length[0], length[-1], 8 * len(surface))).max())
+
+
+def _curvature(curve: CubicSpline, at: Floats) -> Floats:
+    """Of a curve at places (n,) [1/mm]."""
     (dx, dy), (ddx, ddy) = curve(at, 1).T, curve(at, 2).T
-    return float(np.abs((dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3).max())
+    return np.abs((dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3)
 
 
 def _curve(surface: Floats) -> tuple[Floats, CubicSpline]:
