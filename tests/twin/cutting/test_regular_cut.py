@@ -116,6 +116,18 @@ def test_both_ways_agree(name, synthetic, monkeypatch):
     assert removed[0] == pytest.approx(removed[1], rel=2e-3)
 
 
+def test_three_runs_give_the_same_bits_by_both_ways(synthetic, monkeypatch):
+    blank, tool = gear(synthetic, teeth=8)
+    blank = replace(blank, length_mm=0.6)
+    for way in ("regular", "general"):
+        one, *others = (cut(blank, (tool,), cell_mm=CELL) for _ in range(3))
+        assert one.method.startswith(way)
+        for other in others:
+            np.testing.assert_array_equal(other.remains.vertices, one.remains.vertices)
+            np.testing.assert_array_equal(other.remains.faces, one.remains.faces)
+        monkeypatch.setattr("twin.cutting.cut.regular_cut", refused)
+
+
 def refused(*_, **__):
     raise IrregularError("the sake of a comparison")
 
