@@ -99,7 +99,7 @@ class _Writer:
             case ProgramEnd():
                 self.blocks.append("M30")
             case _:
-                raise self._refused(seen, f"{type(command).__name__} is no straight move")
+                raise self._refused(seen, f"a block that is no straight move: {type(command).__name__}")
 
     def _move(self, seen: Observed, move: Move) -> None:
         letters = self.machine.letters

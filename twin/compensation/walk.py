@@ -2,6 +2,7 @@
 
 import math
 import re
+import shutil
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -135,14 +136,17 @@ def _law(way: Way, circle: Circle, gear: Involute, gaps: Floats) -> GapCorrectio
 
 
 def write_job(job: Job, program: str, folder: Path) -> Job:
-    """A copy of the job in a folder of its own, with another program. Raises InputError where the job file
-    does not name its program in a way that can be replaced."""
+    """A copy of the job in a folder of its own, with another program and the subprograms that stood beside the
+    old one. Raises InputError where the job file does not name its program in a way that can be replaced."""
     text = job.path.read_text(encoding="utf-8")
     lines = text.splitlines()
     _replace(job, lines, ("program", "file"), PROGRAM)
     if "/" in job.machine.model:
         _replace(job, lines, ("machine", "model"), str(job.model_folder.resolve()))
     folder.mkdir(parents=True)
+    for path in sorted(job.path.parent.glob(f"*{job.program.suffix}")):
+        if path.is_file() and path.name not in (job.program.name, PROGRAM):
+            shutil.copy(path, folder / path.name)
     (folder / PROGRAM).write_text(program, encoding="utf-8")
     path = folder / "job.toml"
     path.write_text("\n".join([*lines, ""]), encoding="utf-8")

@@ -57,6 +57,8 @@ def test_the_whole_walk(gear_job, tmp_path, capsys):
     assert page.count("<svg") == 8
     assert len(set(_ids(page))) == len(_ids(page))
     assert main(["check", str(out / "compensated")]) == 0
+    beside = sorted(path.name for path in (out / "compensated").iterdir())
+    assert beside == ["O9810.nc", "compensated.nc", "job.toml", "probing.nc"]
     for name in ("before/report.html", "after/report.html", "provenance.json"):
         assert (out / name).is_file()
 
