@@ -136,8 +136,10 @@ def _law(way: Way, circle: Circle, gear: Involute, gaps: Floats) -> GapCorrectio
 
 
 def write_job(job: Job, program: str, folder: Path) -> Job:
-    """A copy of the job in a folder of its own, with another program and the subprograms that stood beside the
-    old one. Raises InputError where the job file does not name its program in a way that can be replaced."""
+    """A copy of the job in a folder of its own, with another program, and with what stood beside the old one.
+
+    Raises InputError where the job file does not name its program in a way that can be replaced.
+    """
     text = job.path.read_text(encoding="utf-8")
     lines = text.splitlines()
     _replace(job, lines, ("program", "file"), PROGRAM)
