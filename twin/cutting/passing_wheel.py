@@ -96,6 +96,17 @@ class PassingWheel:
             stride //= 2
         return sample, best
 
+    def around(self, points: Floats, sample: Ints, reach: int, stride: int) -> tuple[Ints, Floats]:
+        """The samples at which the points are deepest within `reach` of `sample`, and how deep: over every
+        hump that is wider than `stride`, as drives leave them where a block ends."""
+        best_at, best = sample, self.level(points, sample)
+        for shift in range(-reach, reach + 1, stride):
+            other = np.clip(sample + shift, 0, self.last)
+            level = self.level(points, other)
+            up = level > best
+            best_at, best = np.where(up, other, best_at), np.where(up, level, best)
+        return self.uphill(points, best_at, stride)
+
     def deepest(self, points: Floats) -> tuple[Ints, Floats]:
         """The samples at which the points are deepest, wherever they are, and how deep."""
         looks = np.unique(np.linspace(0, self.last, LOOKS).astype(np.int64))

@@ -34,6 +34,8 @@ DEEPEST = 0.25
 """[mm] above its deepest that a stroke may stand and still count as at depth"""
 NEARBY = 128
 """[samples] by which the deepest instant moves at most as a point moves along its ray"""
+HUMPS = (256, 8)
+"""[samples] within which the deepest instant is looked for hump by hump, and how closely"""
 ROUNDS = 14
 """halvings along a ray; the profile itself does the rest"""
 CHECKED = 300
@@ -237,6 +239,7 @@ def _ways_out(wheel: PassingWheel, fan: _Fan, sample: Ints) -> tuple[Floats, Int
 
 def _onto_outline(wheel: PassingWheel, points: Floats, rays: Floats, sample: Ints) -> tuple[Floats, Ints]:
     """The points moved along their rays onto the profile itself, which the table follows nearly, and when."""
+    sample, _ = wheel.around(points, sample, *HUMPS)
     for _ in range(POLISH):
         sample, _ = wheel.uphill(points, sample, NEARBY)
         away = points - wheel.centre[sample]
