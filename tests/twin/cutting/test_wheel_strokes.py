@@ -34,7 +34,7 @@ def precut(helix):
     return law, Blank(diameter_mm=2 * radius, length_mm=4.0, bore_mm=60.0, section=section)
 
 
-def ground(synthetic, helix, *, mount=None):
+def ground(synthetic, helix, *, mount=None, ripple=0.0):
     law, blank = precut(helix)
     wheel = GapWheel(outside_diameter_mm=100.0, chord_um=CHORD).dressed(gear(helix))
     cutter, motion = synthetic.grinding(
@@ -43,6 +43,9 @@ def ground(synthetic, helix, *, mount=None):
     )  # fmt: skip
     # the synthetic motion stands at its first height at angle 0, the pre-cut gap at the front face
     motion = replace(motion, work_angle=motion.work_angle - law.twist * 30.0)
+    if ripple:
+        wave = ripple * np.sin(2.0 * math.pi * motion.centre[:, 2] / 1.1)
+        motion = replace(motion, centre=motion.centre + wave[:, None] * [1.0, 0.0, 0.0])
     if mount is not None:
         motion = replace(motion, mount=mount)
     return law, blank, cut(blank, ((cutter, motion),), cell_mm=0.5)
@@ -76,6 +79,15 @@ def test_ground_flanks_are_the_involute_within_the_dressers_chords(synthetic, he
     assert off[on].max() < 1.02 * CHORD / math.cos(law.base_helix)
     root = inside & (r < law.root_diameter / 2 + 0.5)
     assert r[root].min() == pytest.approx(law.root_diameter / 2, abs=2e-3)
+
+
+@pytest.mark.parametrize("helix", [0.0, 15.0])
+def test_slides_that_swing_on_their_way_leave_every_hump(synthetic, helix):
+    """4 µm to and fro, 1.1 mm apart: near every flank point several instants are deeper than their
+    neighbours, and the deepest of all has formed it."""
+    _, _, found = ground(synthetic, helix, ripple=4e-3)
+    assert found.method.startswith("strokes")
+    assert found.largest_error_um < 0.1
 
 
 def test_an_eccentric_blank_is_ground_about_the_spindle(synthetic):
