@@ -35,6 +35,7 @@ from twin.output.provenance import provenance
 from twin.presets import cutters_of, settings_of
 from twin.progress import Reporter, Silent
 from twin.regression.judge import misses
+from twin.report.charts.contact import contact_file
 from twin.report.page import write_report
 from twin.session import CHUNK, Session, run_program
 from twin.setup import make_ready, require_analogue
@@ -201,7 +202,10 @@ def _write(folder: Path, outcome: Outcome, deviation: NDArray[np.float64], watch
     )
     _json(folder / "provenance.json", origin)
     with watch.measure("report"):
-        write_report(folder / "report.html", report_data(outcome, deviation, origin))
+        report = report_data(outcome, deviation, origin)
+        if report.contact is not None:
+            (folder / "collision.svg").write_text(contact_file(report.contact), encoding="utf-8")
+        write_report(folder / "report.html", report)
 
 
 def figures(outcome: Outcome) -> dict[str, object]:

@@ -29,6 +29,11 @@ def test_delivered_setups() -> None:
                 assert 10_000 <= axis.rapid * 60 <= 20_000
 
 
+@pytest.mark.parametrize("setup", ["hobbing", "tilted"])
+def test_every_parameter_is_delivered_with_a_value(setup: str) -> None:
+    assert set(PARAMETERS) == {number for number, _ in delivered(setup).values}
+
+
 def test_overrides_of_a_bit_an_axis_and_an_axis_bit() -> None:
     parameters = delivered("hobbing", {"201#4": "1", "201#2": 1, "1320.Z": "250.0", "1006#3.X": 0})
     assert parameters.number(201) == 0b00010100

@@ -38,6 +38,25 @@ class _Pair:
     """[m] at that place"""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Touch:
+    """Where two bodies touch, or come closest."""
+
+    bodies: tuple[str, str]
+    """what moves with the tool, what does not"""
+    point: Floats
+    """(3,) [mm] in the part frame at C0"""
+
+
+def touch_at(assembly: Assembly, axes: Floats) -> Touch | None:
+    """The two bodies that are closest with the slides at (axes,) positions; None where nothing can touch."""
+    shapes = _Shapes(assembly)
+    if not shapes.pairs:
+        return None
+    pair = min(shapes.pairs, key=lambda one: shapes.distance(one, axes))
+    return shapes.touch(pair, axes)
+
+
 class Guarded:
     """A machine that stops with an alarm at the first tick in which two of its bodies touch."""
 
@@ -125,12 +144,25 @@ class _Shapes:
         mujoco.mj_kinematics(self._model, self._data)
         return float(mujoco.mj_geomDistance(self._model, self._data, pair.moving, pair.fixed, FAR, None))
 
-    def _words(self, pair: _Pair) -> str:
-        names = [
+    def touch(self, pair: _Pair, axes: Floats) -> Touch:
+        """The pair's bodies, and the middle between their closest points."""
+        self.distance(pair, axes)
+        between = np.zeros(6)
+        mujoco.mj_geomDistance(self._model, self._data, pair.moving, pair.fixed, FAR, between)
+        front = self._data.body("work").xpos
+        point = (between.reshape(2, 3).mean(axis=0) - front) / MM
+        return Touch(bodies=self._names(pair), point=point)
+
+    def _names(self, pair: _Pair) -> tuple[str, str]:
+        moving, fixed = (
             self._model.body(self._model.geom_bodyid[g]).name.replace("_", " ")
             for g in (pair.moving, pair.fixed)
-        ]
-        return f"{names[0]} touches {names[1]}"
+        )
+        return moving, fixed
+
+    def _words(self, pair: _Pair) -> str:
+        moving, fixed = self._names(pair)
+        return f"{moving} touches {fixed}"
 
 
 def _ended(feedback: Feedback, ticks: int, words: str) -> Feedback:

@@ -113,6 +113,19 @@ class ToolOutline:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Contact:
+    """Two bodies of the machine that touched, and everything about them that can."""
+
+    bodies: tuple[str, str]
+    point: Floats
+    """(3,) [mm] in the part frame at C0"""
+    shapes: tuple[tuple[str, Floats], ...]
+    """body and corners (n, 3) [mm] of each convex shape"""
+    found: str
+    """the alarm's own words"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Picture:
     """A picture made elsewhere, for example of the machine."""
 
@@ -147,6 +160,9 @@ class ReportData:
 
     load: tuple[Row, ...] = ()
     """the cutting forces in figures; their course stands in the recording"""
+
+    contact: Contact | None = None
+    """where the run ended in a collision"""
 
     @property
     def solid_part(self) -> Part | None:

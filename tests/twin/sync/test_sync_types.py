@@ -132,7 +132,7 @@ def test_an_induction_motor_the_controller_does_not_know_of_is_refused(tmp_path:
 def test_a_slave_out_of_its_window_ends_the_run_at_that_very_tick(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
 ) -> None:
-    """The work lags by 135 arcsec at 600 rpm of the hob, by half of that at 300: a window between the two is
+    """The work lags by 810 arcsec at 600 rpm of the hob, by half of that at 300: a window between the two is
     left while the hob is run up."""
     free = recorded(tmp_path, follow=True)
     window = 0.5 * (lag(300, KV_WORK) + lag(600, KV_WORK))

@@ -7,6 +7,7 @@ is nothing to show; its line in `SECTIONS`; its template `assets/sections/<name>
 from collections.abc import Callable
 
 from twin.report.data import ReportData
+from twin.report.sections.contact import contact_section
 from twin.report.sections.flanks import flanks_section
 from twin.report.sections.load import load_section
 from twin.report.sections.maps import maps_section
@@ -26,6 +27,7 @@ SECTIONS: tuple[Builder, ...] = (
     verdict_section,
     measured_section,
     messages_section,
+    contact_section,
     part_section,
     maps_section,
     flanks_section,
