@@ -14,6 +14,8 @@ from twin.inspection.units import DECLARED, MILLIMETRES
 
 FORMATS = {".stl": "STL", ".obj": "OBJ", ".ply": "PLY", ".3mf": "3MF", ".glb": "GLB", ".gltf": "glTF"}
 """suffix -> name"""
+GZIP = b"\x1f\x8b"
+"""how a compressed file begins"""
 MIX = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
 """odd multipliers that spread the bits of x, y and z over one word"""
 
@@ -30,10 +32,11 @@ def read_mesh(path: Path, unit: str | None = None) -> tuple[Floats, Ints]:
     """
     place = Place(file=str(path))
     if not path.is_file():
-        raise InputError("there is no such file", place=place)
+        raise InputError("is a folder" if path.is_dir() else "there is no such file", place=place)
     if path.stat().st_size == 0:
         raise InputError("the file is empty", place=place)
     suffix = path.suffix.lower()
+    _check_unpacked(path, place)
     if suffix not in FORMATS:
         raise InputError(
             f"{path.suffix or 'no suffix'} names no format of meshes",
@@ -64,6 +67,17 @@ def read_mesh(path: Path, unit: str | None = None) -> tuple[Floats, Ints]:
         )
     points, index = joined(vertices)
     return points * factor, index.reshape(-1, 3) if faces is None else index[faces]
+
+
+def _check_unpacked(path: Path, place: Place) -> None:
+    """Raise InputError for a file that was compressed as a whole."""
+    try:
+        with path.open("rb") as file:
+            begin = file.read(2)
+    except OSError as fault:
+        raise InputError(f"cannot be read: {fault.strerror}", place=place) from fault
+    if begin == GZIP:
+        raise InputError("the file is compressed by gzip", place=place, remedy="unpack it first: gunzip")
 
 
 def short_way(path: Path) -> Raw | None:

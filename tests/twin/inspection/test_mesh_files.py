@@ -1,5 +1,6 @@
 """Every format in the unit it declares, and every file that cannot be measured."""
 
+import gzip
 import re
 import zipfile
 
@@ -131,3 +132,16 @@ def test_joining_is_what_unique_rows_are(dtype):
     left, index = joined(points)
     np.testing.assert_array_equal(left[index], points)
     assert len(left) == len(np.unique(points, axis=0))
+
+
+@pytest.mark.parametrize("name", ["a.stl.gz", "a.stl", "a.obj"])
+def test_a_compressed_file_is_named(gear, tmp_path, name):
+    path = tmp_path / name
+    path.write_bytes(gzip.compress(saved(gear, tmp_path / "plain.stl").read_bytes()))
+    with pytest.raises(InputError, match=r"compressed by gzip .*unpack it first"):
+        read_mesh(path)
+
+
+def test_a_folder_is_no_mesh(tmp_path):
+    with pytest.raises(InputError, match="is a folder"):
+        read_mesh(tmp_path)
