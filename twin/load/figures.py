@@ -45,10 +45,11 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
         return []
     frequency = "" if loaded.frequency_hz is None else f", at {loaded.frequency_hz:.4g} Hz"
     return [
-        ("Material", f"k_{{c1.1}} {loaded.material.k_c11:g} N/mm², m_{{c}} {loaded.material.m_c:g}"),
+        ("k_{c1.1}, m_{c}", f"{loaded.material.k_c11:g} N/mm², {loaded.material.m_c:g}"),
         ("Energy", f"{figures['energy_j'] / 1e3:.3g} kJ for {figures['removed_mm3']:.4g} mm³"),
-        ("Mean power", f"{figures['mean_power_w']:.3g} W"),
-        ("Largest", f"{figures['largest_power_w']:.3g} W, {figures[f'largest_{tool}']:.3g} N m at the tool"),
+        ("Mean power", f"{figures['mean_power_w']:.0f} W"),
+        ("Largest power", f"{figures['largest_power_w']:.0f} W"),
+        ("Largest torque", f"{figures[f'largest_{tool}']:.3g} N m at the tool"),
         ("Give", f"up to {figures['largest_deflection_um']:.3g} µm"),
         ("Rounds", f"{loaded.rounds}, the last moved {figures['moved_um']:.2g} µm{frequency}"),
     ]
@@ -62,7 +63,7 @@ def load_words(loaded: LoadedRun) -> str:
     state = "settled" if loaded.settled else "not settled"
     return (
         f"{state} after {loaded.rounds} rounds; {figures['removed_mm3']:.1f} mm³ for "
-        f"{figures['energy_j'] / 1e3:.3g} kJ; power while cutting {figures['mean_power_w']:.3g} W, at most "
-        f"{figures['largest_power_w']:.3g} W; mounts give way by up to "
+        f"{figures['energy_j'] / 1e3:.3g} kJ; power while cutting {figures['mean_power_w']:.0f} W, at most "
+        f"{figures['largest_power_w']:.0f} W; mounts give way by up to "
         f"{figures['largest_deflection_um']:.3g} µm (rays {loaded.resolution_mm:.2g} mm apart)"
     )
