@@ -258,6 +258,12 @@ class _Reader:
             material_of(work.material, physics)
         except InputError as cause:
             self._fail(("work", "material"), cause.text, cause.remedy.removeprefix("valid: "))
+        if work.gear is not None:
+            self._fail(
+                ("physics", "cutting_load"),
+                "forces on a blank that is cut already are not modelled",
+                "a blank without [work.gear]",
+            )
         if any(isinstance(tool, DiscWheel | GapWheel) for tool in tools.values()):
             self._fail(
                 ("physics", "cutting_load"),

@@ -235,6 +235,22 @@ def test_tables_that_cannot_be_are_refused_with_their_line(tmp_path, tool, size,
     assert raised.value.exit_code is ExitCode.USAGE
 
 
+def test_a_blank_that_is_cut_already_is_refused(tmp_path):
+    (tmp_path / "program.nc").write_text(PROGRAM.format(x=18.0), encoding="utf-8")
+    text = JOB.format(material="C45", tool="polygon_head", size=HEAD, physics="cutting_load = true")
+    gear = (
+        "[work.gear]\nstock_per_flank_mm = 0.1\nhelix_angle_deg = 0.0\nnormal_pressure_angle_deg = 20.0\n"
+        "profile_shift = 0.0\ndedendum_factor = 1.25\nnumber_of_teeth = 10\nnormal_module_mm = 1.5\n[tool]"
+    )
+    (tmp_path / "job.toml").write_text(text.replace("[tool]", gear), encoding="utf-8")
+    with pytest.raises(InputError, match="cut already are not modelled") as raised:
+        read_job(tmp_path)
+    assert raised.value.place
+    assert (
+        raised.value.place.line == text.replace("[tool]", gear).splitlines().index("cutting_load = true") + 1
+    )
+
+
 def test_rays_too_close_for_the_memory_are_refused(fly):
     with pytest.raises(InputError, match="more memory than allowed"):
         removal(BAR, (fly,), resolution_mm=1e-3)
