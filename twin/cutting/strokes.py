@@ -34,7 +34,7 @@ DEEPEST = 0.25
 """[mm] above its deepest that a stroke may stand and still count as at depth"""
 NEARBY = 128
 """[samples] by which the deepest instant moves at most as a point moves along its ray"""
-HUMPS = (256, 8)
+HUMPS = (256, 2)
 """[samples] within which the deepest instant is looked for hump by hump, and how closely"""
 ROUNDS = 14
 """halvings along a ray; the profile itself does the rest"""
