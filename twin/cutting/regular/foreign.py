@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from twin.cutting.local import can_matter
 from twin.cutting.pairs import Candidates
 from twin.cutting.regular.chart import Chart
-from twin.cutting.regular.tiles import Blocks, Patches, blocks, patches, quarters, stays_out
+from twin.cutting.regular.patches import Blocks, Patches, blocks, patches, quarters
+from twin.cutting.regular.tiles import stays_out
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ from twin.cutting.local import Tangents
 from twin.cutting.pairs import batches, in_parallel, leaders
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.irregular import IrregularError
-from twin.cutting.regular.tiles import Patches, quarters
+from twin.cutting.regular.patches import Patches, quarters
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]

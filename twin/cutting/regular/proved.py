@@ -11,8 +11,9 @@ from twin.cutting.pairs import leaders
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.foreign import matter
 from twin.cutting.regular.inside import prove_inside
+from twin.cutting.regular.patches import Patches, patches
 from twin.cutting.regular.templates import WHOLE, Screwed, Strips, prove_templates, strips_of
-from twin.cutting.regular.tiles import Patches, Tiling, patches, search
+from twin.cutting.regular.tiles import Tiling, search
 from twin.cutting.sweep import Images, Sweep
 
 Floats = NDArray[np.float64]

@@ -103,7 +103,7 @@ def _smooth(values: Floats, wide: int) -> Floats:
     """Values (n,) averaged over twice `wide` neighbours."""
     weight = np.ones(2 * max(wide, 1) + 1)
     padded = np.pad(values, max(wide, 1), mode="edge")
-    return np.convolve(padded, weight / weight.sum(), mode="valid")
+    return np.asarray(np.convolve(padded, weight / weight.sum(), mode="valid"), dtype=np.float64)
 
 
 def _where(curve: CubicSpline, radius: float, low: float, high: float) -> float:

@@ -24,7 +24,7 @@ CHUNK = 1 << 12
 STIFFNESS = 1e-6
 """What a vertex's way from the middle costs, against its distance from the planes, both squared: feed marks
 and generating flats differ by a hundredth of a radian."""
-ROOM = 0.5
+ROOM = 0.35
 """Share of its cell by which a vertex may leave the cell's middle."""
 
 

@@ -13,9 +13,10 @@ from twin.cutting.pairs import Candidates
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.inside import prove_inside
 from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.regular.patches import Patches, blocks, columns, patches
 from twin.cutting.regular.screw import Layout
 from twin.cutting.regular.steady import SAMPLES, Steady
-from twin.cutting.regular.tiles import Patches, Tiling, blocks, columns, patches, search
+from twin.cutting.regular.tiles import Tiling, search
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
