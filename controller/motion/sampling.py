@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.clock import Geared
+from controller.laws.angle_table import RAMP_S, TURN
 from controller.laws.gearbox import slave_travel
 from controller.laws.segments import Round, Straight, Track
 from controller.motion.timeline import Epoch, Marks, Timeline
@@ -29,11 +30,19 @@ def setpoints(timeline: Timeline, time: Floats) -> Floats:
                 added += slave_travel(epoch.gear, part[:, epoch.gear.master] - epoch.master_start)
             part[:, epoch.gear.slave] += added
     for correction in timeline.corrections:
-        table, weight = correction.table, correction.weight(time)
-        angle = out[:, table.work].copy()
-        for column in table.values:
-            out[:, column] += weight * table.at(column, angle)
+        came, gone = (np.clip((time - t) / RAMP_S, 0.0, 1.0) for t in (correction.start, correction.end))
+        angle = out[:, correction.table.work].copy()
+        for column, values in correction.table.values.items():
+            out[:, column] += came * (1.0 - gone) * read_at(np.array(values), angle)
     return out
+
+
+def read_at(values: Floats, angle: Floats) -> Floats:
+    """(n,) what a table of values at even angles of a turn says at angles (n,) [deg]."""
+    place = np.mod(angle, TURN) * (len(values) / TURN)
+    k = np.floor(place).astype(np.int64) % len(values)
+    share = place - np.floor(place)
+    return values[k] + share * (values[(k + 1) % len(values)] - values[k])
 
 
 def engaged(timeline: Timeline, time: Floats) -> NDArray[np.bool_]:

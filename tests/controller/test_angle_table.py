@@ -9,7 +9,8 @@ from controller.clock import Feedback
 from controller.cnc import Controller
 from controller.dry_run import dry_run
 from controller.language.source import parse_program
-from controller.laws.angle_table import RAMP_S, AngleTable
+from controller.laws.angle_table import RAMP_S
+from controller.motion.sampling import read_at
 from controller.tables.parameters import delivered
 
 X, Z, Y, C = range(4)
@@ -34,9 +35,11 @@ HOB = "G28 U0 W0\nG28 H0 V0\n{before}\nG81 T20 L1\nS300\nG04 X4.\nS0\nG80\n{afte
 
 
 def test_the_law_is_straight_between_its_points_and_closes():
-    law = AngleTable(work=3, values={0: (1.0, 3.0, -2.0)})
+    values = np.array([1.0, 3.0, -2.0])
     angle = np.array([0.0, 60.0, 120.0, 180.0, 240.0, 300.0, 360.0, -60.0, 720.0 + 60.0])
-    assert law.at(0, angle) == pytest.approx([1.0, 2.0, 3.0, 0.5, -2.0, -0.5, 1.0, -0.5, 2.0], abs=1e-12)
+    assert read_at(values, angle) == pytest.approx(
+        [1.0, 2.0, 3.0, 0.5, -2.0, -0.5, 1.0, -0.5, 2.0], abs=1e-12
+    )
 
 
 def test_what_is_added_while_hobbing():
