@@ -19,7 +19,7 @@ from twin.cutting.motion import CutterMotion
 from twin.cutting.plan import CORE, plan_grid
 from twin.cutting.refine import refine
 from twin.cutting.regular.irregular import IrregularError
-from twin.cutting.regular.regular import regular_cut
+from twin.cutting.regular.regular import Regular, regular_cut
 from twin.cutting.stock import Remains, subtract
 from twin.cutting.strokes import Strokes, find_strokes
 from twin.cutting.sweep import Sweep
@@ -29,6 +29,8 @@ Progress = Callable[[str, float], None]
 
 CRUMB = 1e-6
 """[mm³] below which a severed piece is rounding"""
+MUCH_COARSER = 2.0
+"""Times the tolerance by which facets may stray before a note says so."""
 FORMED_ERROR = 0.1
 """[µm] off the envelope from which a cut is not one of strokes along gaps"""
 
@@ -88,11 +90,11 @@ def cut(
     progress("searching the cut surface", 0.1)
     try:
         regular = regular_cut(blank, tools, sweep, tolerance_um=tolerance_um, cell_mm=cell_mm)
-        method, cells, pairs = "regular (charts of equal gaps)", regular.cell_mm, regular.pairs
+        method, cells, pairs = _regular_method(regular), regular.cell_mm, regular.pairs
         surface: Surface | None = regular.surface
         progress("checking", 0.8)
         errors, facets = check(sweep, regular.surface, blank)
-        notes += [*regular.notes, *coarse(errors, facets)]
+        notes += [*_coarser(regular, tolerance_um), *coarse(errors, facets)]
     except IrregularError as why:
         made = _general(blank, sweep, grid, closest, progress)
         method, cells, pairs = f"general (cylindrical grid), for {why}", grid.cell_mm, made.pairs
@@ -116,6 +118,24 @@ def cut(
         facet_error_um=facets.largest_um,
         notes=tuple(notes),
     )
+
+
+def _regular_method(regular: Regular) -> str:
+    if regular.coarser == 1.0:
+        return "regular (charts of equal gaps)"
+    return (
+        f"regular (charts of equal gaps, cells {regular.coarser:.2g} times as long to keep within the memory)"
+    )
+
+
+def _coarser(regular: Regular, tolerance_um: float) -> list[str]:
+    """What to say of cells much longer than the tolerance asks for."""
+    if regular.coarser**2 < MUCH_COARSER:
+        return []
+    return [
+        f"cells are {regular.coarser:.2g} times as long as the tolerance asks for, to save memory: "
+        f"facets keep to about {tolerance_um * regular.coarser**2:.2g} µm on the flanks"
+    ]
 
 
 @dataclass(frozen=True, slots=True)

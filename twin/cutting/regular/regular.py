@@ -52,7 +52,8 @@ class Regular:
     """across and along the gaps"""
     pairs: int
     """pairs of block and bite evaluated in the search"""
-    notes: tuple[str, ...]
+    coarser: float
+    """times as long as the tolerance asks for, to keep within the memory"""
 
 
 def regular_cut(
@@ -79,16 +80,12 @@ def regular_cut(
     if across is None:
         across = max(math.sqrt(8.0 * ROOT_SAG * tolerance_um / bend(found)), FINEST * height)
         along = math.sqrt(8.0 * MARK_SAG * tolerance_um * cutter.radius)
-    notes = ()
+    coarser = 1.0
     ways = float(np.hypot(*np.diff(found, axis=0).T).sum()), stock.z_high - stock.z_low
     count = indexing.teeth * ways[0] / across * ways[1] / along
     if count > BUDGET and cell_mm is None:
         coarser = math.sqrt(count / BUDGET)
         across, along = min(across * coarser, ROOM * height / RIM), along * coarser
-        notes = (
-            f"cells are {coarser:.2g} times as long as the tolerance asks for, to keep within the memory: "
-            f"facets keep to about {tolerance_um * coarser**2:.2g} µm on the flanks",
-        )
     thick = across
     tiling = Tiling.of((across, along), thick, cutter.radius, bend(found))
     frame = Frame(indexing=indexing, stock=stock.radius, margin=RIM * across)
@@ -109,7 +106,7 @@ def regular_cut(
     chart = chart_along(frame, motion.mount, surface, z, lift)
     proved = prove(sweep, chart, tiling, thick, screwed)
     made = skin(sweep, proved, thick)
-    return Regular(tubes(chart, made), (across, float(z[1] - z[0])), proved.pairs, notes)
+    return Regular(tubes(chart, made), (across, float(z[1] - z[0])), proved.pairs, coarser)
 
 
 def _screwed(
