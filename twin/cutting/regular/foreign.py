@@ -5,11 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutting.local import can_matter
-from twin.cutting.pairs import Candidates
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.patches import Blocks, Patches, blocks, patches, quarters
-from twin.cutting.regular.tiles import stays_out
+from twin.cutting.regular.tiles import judged
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -38,50 +36,29 @@ def matter(
     parts = [patches(chart.cells[0], strips.gap[[row]], strips.k[[row]], sizes[0][0]) for row in rows]
     strip = np.repeat(rows, [len(part.gap) for part in parts])
     patch = Patches(*(np.concatenate([getattr(p, name) for p in parts]) for name in Patches.__slots__))
-    lists, safe = (
-        Candidates(np.zeros(1, dtype=np.int64), np.zeros(0, dtype=np.int64)),
-        np.zeros(0, dtype=bool),
+    block = blocks(chart, patch, sizes[0][1])
+    lists = sweep.near_of(block.middle, block.radius + block.depth, [passes[int(row)] for row in strip])
+    held = judged(
+        sweep, block, lists, np.zeros(len(lists.bites), dtype=bool), _floors(sweep, block, judges, patch)
     )
-    for number, (size, thick) in enumerate(sizes):
-        if number == 0:
-            block = blocks(chart, patch, thick)
-            lists = sweep.near_of(
-                block.middle, block.radius + block.depth, [passes[int(row)] for row in strip]
-            )
-            safe = np.zeros(len(lists.bites), dtype=bool)
-        else:
-            some = np.flatnonzero(np.diff(lists.start))
-            patch, parent = quarters(patch.of(some), size)
-            own = some[parent]
-            strip, safe, lists = strip[own], safe[lists.pairs(own)], lists.of(own)
-            block = blocks(chart, patch, thick)
-        keep, safe = _left(sweep, block, lists, safe, _judges(judges, patch))
-        lists = lists.where(keep)
-        safe = safe[keep]
-        if not len(lists.bites):
+    for size, thick in sizes[1:]:
+        lists = held.tangents.lists
+        some = np.flatnonzero(np.diff(lists.start))
+        if not len(some):
             return found
-    found[strip[np.diff(lists.start) > 0]] = True
+        patch, parent = quarters(patch.of(some), size)
+        own = some[parent]
+        strip, block = strip[own], blocks(chart, patch, thick)
+        floors = _floors(sweep, block, judges, patch)
+        held = judged(sweep, block, lists.of(own), held.safe[lists.pairs(own)], floors)
+    found[strip[np.diff(held.tangents.lists.start) > 0]] = True
     return found
 
 
-def _judges(judges: Ints, patch: Patches) -> Ints:
-    """Of patches (n,): that of the cell in their middle."""
+def _floors(sweep: Sweep, block: Blocks, judges: Ints, patch: Patches) -> Floats:
+    """Lower bounds at the blocks' corners, of what the judge in the middle of each patch removes."""
     i, k = (edges.sum(axis=1) // 2 for edges in (patch.i, patch.k))
-    return judges[patch.gap, i, k]
-
-
-def _left(sweep: Sweep, block: Blocks, lists: Candidates, safe: Bools, judge: Ints) -> tuple[Bools, Bools]:
-    """Which bites of blocks may cut more than the `judge` (n,), or behind the shell; which do not there."""
-    owner = lists.owner()
-    meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
-    change, over = sweep.bound(meeting, lists.bites, block.radius[owner])
-    known = judge >= 0
+    judge = judges[patch.gap, i, k]
     floors = sweep.floors(block.middle, block.corners, np.maximum(judge, 0), block.radius)
-    floors[:, ~known] = -np.inf
-    plane = np.vstack([meeting.depth, meeting.gradient.T])
-    keep = can_matter(plane, over, owner, block.spokes(block.middle), floors)
-    keep &= meeting.depth + change > 0
-    unsure = np.flatnonzero(~safe)
-    safe = safe.copy()
-    safe[unsure] = stays_out(sweep, block, owner[unsure], lists.bites[unsure], meeting.of(unsure))
-    return keep | ~safe, safe
+    floors[:, judge < 0] = -np.inf
+    return floors

@@ -115,7 +115,7 @@ def _settle(sweep: Sweep, chart: Chart, patch: Patches, held: Held, thick: float
         lists = lists.of(some[parent])
         block, owner = blocks(chart, patch, thick), lists.owner()
         meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
-        lists = lists.where(~stays_out(sweep, block, owner, lists.bites, meeting))
+        lists = lists.where(~_stays_out(sweep, block, owner, lists.bites, meeting))
     if len(lists.bites):
         raise IrregularError("something is cut outside of the gaps")
 
@@ -137,7 +137,7 @@ def refined(sweep: Sweep, block: Blocks, parent: Ints, held: Held) -> Held:
         outside = here.outside(mine.middle, mine.radius)
         keep = can_matter(mine.plane, mine.over, owner, here.spokes(mine.middle), floors)
         keep |= outside[owner] | ~safe
-        return _judged(sweep, here, mine.lists.where(keep), safe[keep], floors)
+        return judged(sweep, here, mine.lists.where(keep), safe[keep], floors)
 
     return _gathered(np.concatenate([[0], np.cumsum(length)]), work)
 
@@ -147,14 +147,14 @@ def first_held(sweep: Sweep, block: Blocks, lists: Candidates) -> Held:
 
     def work(part: slice) -> Held:
         own = lists.of(np.arange(part.start, part.stop))
-        return _judged(sweep, block.of(part), own, np.zeros(len(own.bites), dtype=bool), None)
+        return judged(sweep, block.of(part), own, np.zeros(len(own.bites), dtype=bool), None)
 
     if (np.diff(lists.start) == 0).any():
         raise IrregularError(UNCUT)
     return _gathered(lists.start, work)
 
 
-def _judged(sweep: Sweep, block: Blocks, lists: Candidates, safe: Bools, floors: Floats | None) -> Held:
+def judged(sweep: Sweep, block: Blocks, lists: Candidates, safe: Bools, floors: Floats | None) -> Held:
     """Cull by the tangents at the blocks' own middles; what is not safe stays, if it is not found to be."""
     owner = lists.owner()
     meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
@@ -166,7 +166,7 @@ def _judged(sweep: Sweep, block: Blocks, lists: Candidates, safe: Bools, floors:
     keep &= meeting.depth + change > 0
     unsure = np.flatnonzero(~safe)
     safe = safe.copy()
-    safe[unsure] = stays_out(sweep, block, owner[unsure], lists.bites[unsure], meeting.of(unsure))
+    safe[unsure] = _stays_out(sweep, block, owner[unsure], lists.bites[unsure], meeting.of(unsure))
     keep |= ~safe
     some = np.flatnonzero(keep)
     tangents = Tangents(
@@ -181,7 +181,7 @@ def _floors(sweep: Sweep, block: Blocks, lists: Candidates, height: Floats) -> F
     return sweep.floors(block.middle, block.corners, judge, block.radius)
 
 
-def stays_out(sweep: Sweep, block: Blocks, owner: Ints, bite: Ints, meeting: Meeting) -> Bools:
+def _stays_out(sweep: Sweep, block: Blocks, owner: Ints, bite: Ints, meeting: Meeting) -> Bools:
     """Which bites (m,), met at their blocks' middles, touch nothing that lies behind the shell.
 
     At y + t w, y in the shell's back and w the way behind it, a bite's depth is at most tangent(y) +
