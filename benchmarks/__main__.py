@@ -5,6 +5,7 @@ import resource
 import time
 from pathlib import Path
 
+from benchmarks.inspection import inspection
 from benchmarks.reading import program_of, reading
 from controller.cnc import Controller
 from controller.dry_run import dry_run
@@ -64,6 +65,8 @@ def machine_ticks(scene: str = "hexagon_af17") -> None:
         )
 
 
+for figures in inspection():
+    say(**figures)
 for figures in reading():
     say(**figures)
 controller_blocks("plain", 1_000_000)

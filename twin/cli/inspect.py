@@ -9,6 +9,7 @@ from typing import Literal
 
 from twin.errors import ExitCode, InputError, Place
 from twin.inspection.axis import straightened
+from twin.inspection.beside import Beside
 from twin.inspection.columns import csv_lines
 from twin.inspection.inspection import PRESSURE_DEG, inspect
 from twin.inspection.mesh_files import read_mesh
@@ -25,14 +26,14 @@ GEAR_OPTIONS = ("helix", "profile_shift", "accuracy_class", "tip_diameter", "pin
 """options that say more of a gear named by --teeth and --module"""
 
 
-def inspect_command(options: argparse.Namespace) -> ExitCode:
-    """Measure a mesh. Raises HobtwinError."""
+def inspect_command(options: argparse.Namespace, mesh: Beside[Mesh]) -> ExitCode:
+    """Measure a mesh that is being read. Raises HobtwinError."""
     _check_comparison(options)
     nominal = _nominal(options)
     teeth = _teeth(options.teeth_to_measure)
     if options.against is not None:
-        return _compare(options, nominal, teeth)
-    _, found = _inspected(options.mesh, options.units, options, nominal, teeth)
+        return _compare(options, mesh.result(), nominal, teeth)
+    found = _inspected(options.mesh, mesh.result(), options, nominal, teeth)
     if options.csv is not None:
         _write_csv(options.csv, found)
     if options.format == "json":
@@ -45,16 +46,14 @@ def inspect_command(options: argparse.Namespace) -> ExitCode:
 
 def _inspected(
     path: Path,
-    units: str | None,
+    mesh: Mesh,
     options: argparse.Namespace,
     nominal: Nominal | None,
     teeth: tuple[int, ...] | Literal["all"] | None,
-) -> tuple[Mesh, Inspection]:
-    vertices, faces = read_mesh(path, units)
+) -> Inspection:
     try:
-        found = inspect(
-            vertices,
-            faces,
+        return inspect(
+            *mesh,
             nominal,
             teeth=teeth,
             pressure_deg=PRESSURE_DEG if options.pressure_angle is None else options.pressure_angle,
@@ -62,7 +61,6 @@ def _inspected(
         )
     except MeshError as fault:
         raise InputError(fault.text, place=Place(file=str(path)), remedy=fault.remedy) from fault
-    return (vertices, faces), found
 
 
 def _check_comparison(options: argparse.Namespace) -> None:
@@ -80,17 +78,21 @@ def _check_comparison(options: argparse.Namespace) -> None:
 
 
 def _compare(
-    options: argparse.Namespace, nominal: Nominal | None, teeth: tuple[int, ...] | Literal["all"] | None
+    options: argparse.Namespace,
+    mesh: Mesh,
+    nominal: Nominal | None,
+    teeth: tuple[int, ...] | Literal["all"] | None,
 ) -> ExitCode:
     """One mesh against another. Exit code 1 only where --tolerance-um is exceeded."""
     from twin.comparison.compare import compare  # noqa: PLC0415 - a single mesh needs none of this
     from twin.comparison.words import text_lines as comparison_lines  # noqa: PLC0415
     from twin.comparison.words import to_json as comparison_json  # noqa: PLC0415
 
+    other = read_mesh(options.against, options.against_units)
     parts = []
-    for path, units in ((options.mesh, options.units), (options.against, options.against_units)):
-        mesh, found = _inspected(path, units, options, nominal, teeth)
-        solid = check_solid(*mesh)
+    for path, read in ((options.mesh, mesh), (options.against, other)):
+        found = _inspected(path, read, options, nominal, teeth)
+        solid = check_solid(*read)
         parts.append((solid if found.axis is None else straightened(solid, found.axis), found))
     comparison = compare(parts[0], parts[1])
     if options.report is not None:

@@ -1,6 +1,7 @@
 """Arguments in, exit code out. Commands import what they need when they run: `check` stays light."""
 
 import argparse
+import os
 import signal
 import sys
 import threading
@@ -116,9 +117,15 @@ def _new(options: argparse.Namespace) -> ExitCode:
 
 
 def _inspect(options: argparse.Namespace) -> ExitCode:
+    # its matrices are small: threads of the algebra library only stand in the way of ours
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    from twin.inspection.beside import Beside  # noqa: PLC0415
+    from twin.inspection.mesh_files import read_mesh  # noqa: PLC0415
+
+    mesh = Beside(lambda: read_mesh(options.mesh, options.units))  # while all the rest is loaded
     from twin.cli.inspect import inspect_command  # noqa: PLC0415
 
-    return inspect_command(options)
+    return inspect_command(options, mesh)
 
 
 def _compensate(options: argparse.Namespace) -> ExitCode:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.errors import InputError, PartError
+from twin.inspection.beside import Beside
 from twin.inspection.involute import Involute, geometry, involute
 from twin.inspection.nominal import GearNominal
 from twin.inspection.recognise import Outline
@@ -137,6 +138,17 @@ def _thickness(solid: Solid, outline: Outline) -> tuple[Floats, Floats]:
     radii = outline.root_radius + np.linspace(0.02, 0.99, RADII) * outline.depth
     reach = 0.4 * (outline.high - outline.low)
     heights = outline.middle + reach * np.linspace(-1, 1, 9)
+    above = Beside(lambda: _half_teeth(solid, outline, heights[5:], radii))
+    rows = _half_teeth(solid, outline, heights[:5], radii) + above.result()
+    half, whole = (np.concatenate(column) for column in zip(*rows, strict=True))
+    everywhere = whole.all(axis=0)
+    return radii[everywhere], half[:, everywhere]
+
+
+def _half_teeth(
+    solid: Solid, outline: Outline, heights: Floats, radii: Floats
+) -> list[tuple[Floats, np.ndarray]]:
+    """Return mean half angles (planes, n) of the teeth at radii (n,), and where every flank is there once."""
     rows = []
     for part in plane_segments_in_parts(solid, heights):
         crossings = unfolded(circle_crossings(part, radii), FOLD * 2 * math.pi / outline.count)
@@ -146,9 +158,7 @@ def _thickness(solid: Solid, outline: Outline) -> tuple[Floats, Floats]:
         half = np.mod(np.angle(left * right.conj()), 2 * math.pi) / (2 * outline.count)
         count = np.bincount(place, minlength=math.prod(shape))
         rows.append((half.reshape(shape), (count == 2 * outline.count).reshape(shape)))
-    half, whole = (np.concatenate(column) for column in zip(*rows, strict=True))
-    everywhere = whole.all(axis=0)
-    return radii[everywhere], half[:, everywhere]
+    return rows
 
 
 def _fit(outline: Outline, radius: Floats, half_tooth: Floats, pressure_deg: float) -> Found:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.inspection.beside import Beside
 from twin.inspection.reading import SENSES, Placed, pitch_readings, read_flanks
 from twin.inspection.result import Figures, Flank, Trace, Wave
 from twin.inspection.solid import Floats, Solid
@@ -93,17 +94,19 @@ def usual_teeth(teeth: int) -> tuple[int, ...]:
 
 def measure_flanks(solid: Solid, placed: Placed, usable: Usable, teeth: tuple[int, ...]) -> Measured:
     """Measure left and right flanks; traces are evaluated on `teeth`, counted from 0."""
-    profile, helix = _profiles(solid, placed, usable), _helices(solid, placed)
+    beside = Beside(lambda: _evaluated(_helices(solid, placed), teeth))
+    profile, profiles = _evaluated(_profiles(solid, placed, usable), teeth)
+    helix, helices = beside.result()
     pitch = pitch_readings(solid, placed)
     outward = placed.gear.measuring_diameter / placed.gear.base_diameter
     left, right = (
         _flank(
-            profile=profile.traces(side, teeth),
-            helix=helix.traces(side, teeth),
+            profile=profiles[side][0],
+            helix=helices[side][0],
             # numbered clockwise: a flank further on is at a smaller angle
             index=-sense * pitch.deviation[side, 0, 0] * outward,
             facet=pitch.facet[side, 0, 0] * outward,
-            waves=(profile.waves(side), helix.waves(side)),
+            waves=(profiles[side][1], helices[side][1]),
         )
         for side, sense in enumerate(SENSES)
     )
@@ -113,6 +116,13 @@ def measure_flanks(solid: Solid, placed: Placed, usable: Usable, teeth: tuple[in
         profile_range=profile.limits,
         largest_facet_um=max(profile.largest_facet_um, helix.largest_facet_um),
     )
+
+
+def _evaluated(
+    scan: _Scan, teeth: tuple[int, ...]
+) -> tuple[_Scan, list[tuple[list[Trace | None], tuple[Wave, ...]]]]:
+    """Return a scan, and traces and waves of its left and its right flanks."""
+    return scan, [(scan.traces(side, teeth), scan.waves(side)) for side in range(len(SENSES))]
 
 
 def _profiles(solid: Solid, placed: Placed, usable: Usable) -> _Scan:

@@ -1,7 +1,6 @@
 """One inspection from mesh to verdict."""
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Literal
 
@@ -9,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from twin.errors import InputError, PartError
 from twin.inspection.axis import find_axis, straightened
+from twin.inspection.beside import Beside
 from twin.inspection.bodies import separate_bodies
 from twin.inspection.damage import FLANK_LIMIT, destroyed
 from twin.inspection.fit import find_gear
@@ -54,10 +54,9 @@ def inspect(
     _check_nominal(nominal, pressure_deg)
     solid = check_solid(vertices, faces)
     wanted = _count(nominal)
-    with ThreadPoolExecutor(1) as beside:  # numpy leaves the interpreter free most of the time
-        counted = beside.submit(separate_bodies, solid)
-        outline = recognise(solid, wanted=wanted)
-        bodies = counted.result()
+    counted = Beside(lambda: separate_bodies(solid))
+    outline = recognise(solid, wanted=wanted)
+    bodies = counted.result()
     if bodies > 1:
         return _nothing(f"the mesh holds {bodies} separate bodies, a part is one", nominal)
     axis = None

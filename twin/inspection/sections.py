@@ -5,6 +5,7 @@ and where that crossing crosses a circle about the work axis. A point on a plane
 outside it, so that closed meshes give closed outlines and crossings come in pairs.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -117,13 +118,18 @@ def plane_segments_in_parts(solid: Solid, heights: Floats) -> Iterator[Segments]
 
     The planes of each part are numbered from 0 again; together they are `heights`, in order.
     """
-    first, count = _spans(solid.face_low, solid.face_high, heights)
     planes = len(heights)
+    apart = float(np.diff(heights).min(initial=math.inf))
+    if len(solid.faces) + (solid.face_high - solid.face_low).sum() / apart <= PART:
+        yield plane_segments(solid, heights)  # there are no more crossings than that
+        return
+    first, count = _spans(solid.face_low, solid.face_high, heights)
     begin = np.bincount(first, minlength=planes + 1)
     end = np.bincount(first + count, minlength=planes + 1)
     part = np.cumsum(np.cumsum(begin - end)[:planes]) // PART
-    for number in np.unique(part):
-        yield plane_segments(solid, heights[part == number])
+    for number in range(int(part.max(initial=-1)) + 1):
+        if (part == number).any():
+            yield plane_segments(solid, heights[part == number])
 
 
 def points_between(solid: Solid, low: float, high: float) -> Floats:
@@ -195,7 +201,7 @@ def unfolded(crossings: Crossings, within: float | Floats) -> Crossings:
     one = np.abs(net) == 1
     # whichever of the group first goes the way of all of them stands for it; what stays unclear stays
     candidates = np.flatnonzero(one & (sense == net))
-    chosen = candidates[np.unique(group[candidates], return_index=True)[1]]
+    chosen = candidates[np.diff(group[candidates], prepend=-1) != 0]
     kept = np.sort(np.concatenate([chosen, np.flatnonzero(np.abs(net) > 1)]))
     angle = np.where(one, begin + net * reach, crossings.angle)
     return Crossings(

@@ -1,12 +1,12 @@
 """The solid to be measured: a closed, oriented mesh, checked once so that the rest may rely on it."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from twin.errors import InputError
+from twin.inspection.beside import Beside
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -63,18 +63,17 @@ def check_solid(vertices: ArrayLike, faces: ArrayLike) -> Solid:
             f"valid are 0 to {len(points) - 1}"
         )
     triangles, mended = _without_degenerate(triangles)
-    with ThreadPoolExecutor(1) as beside:  # numpy leaves the interpreter free most of the time
-        measured = beside.submit(_limits, points, triangles)
-        try:
-            neighbours = _neighbours(triangles, len(points))
-        except MeshError:
-            single = _without_doubled(triangles)
-            doubled = len(triangles) - len(single)
-            if not doubled:
-                raise
-            mended.append(f"{doubled} doubled faces were left out")
-            return solid_of(points, single, _neighbours(single, len(points)), tuple(mended))
-        return _solid(points, triangles, neighbours, tuple(mended), measured.result())
+    measured = Beside(lambda: _limits(points, triangles))
+    try:
+        neighbours = _neighbours(triangles, len(points))
+    except MeshError:
+        single = _without_doubled(triangles)
+        doubled = len(triangles) - len(single)
+        if not doubled:
+            raise
+        mended.append(f"{doubled} doubled faces were left out")
+        return solid_of(points, single, _neighbours(single, len(points)), tuple(mended))
+    return _solid(points, triangles, neighbours, tuple(mended), measured.result())
 
 
 def solid_of(

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from twin.inspection.beside import Beside
 from twin.inspection.sections import (
     Segments,
     circle_crossings,
@@ -60,14 +61,22 @@ class Survey:
 def survey(solid: Solid, bottom: float, top: float, planes: int) -> Survey:
     """Look at sections in the middles of as many slices between two heights [mm]."""
     heights = bottom + (top - bottom) * (np.arange(planes) + 0.5) / planes
+    half = planes // 2
+    above = Beside(lambda: _rows(solid, heights[half:]))
+    rows = (_rows(solid, heights[:half]) if half else []) + above.result()
+    low, high, counts, missing = (np.concatenate(column) for column in zip(*rows, strict=True))
+    return Survey(bottom=bottom, top=top, heights=heights, low=low, high=high, counts=counts, missing=missing)
+
+
+def _rows(solid: Solid, heights: Floats) -> list[tuple[Floats, Floats, Ints, Ints]]:
+    """Look at sections at heights (k,): least and largest radii, teeth, and teeth that are missing."""
     rows = []
     for part in plane_segments_in_parts(solid, heights):
         outer = outer_outlines(part)
         low, high = radial_limits(outer)
         counts, missing = _counts(outer, (low + high) / 2)
         rows.append((low, high, np.where(high - low < ROUND * high, 0, counts), missing))
-    low, high, counts, missing = (np.concatenate(column) for column in zip(*rows, strict=True))
-    return Survey(bottom=bottom, top=top, heights=heights, low=low, high=high, counts=counts, missing=missing)
+    return rows
 
 
 def longest_run(counts: Ints, wanted: int | None = None) -> tuple[int, int]:

@@ -8,8 +8,11 @@ import zipfile
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
 
 from twin.errors import InputError
+from twin.inspection.formats.digits import whole_numbers
 from twin.inspection.formats.others import read_other
 from twin.inspection.mesh_files import read_mesh, short_way
 from twin.output.meshes import write_3mf, write_glb, write_stl
@@ -60,6 +63,38 @@ def test_files_in_words(gear, tmp_path, name, words):
     same(tmp_path / name, exact=False)  # trimesh rounds what is written as float to single precision
 
 
+def test_ply_in_words_with_more_said_of_faces(tmp_path):
+    path = tmp_path / "a.ply"
+    header = (FACES % 4).replace(b"end_header", b"property ushort stl\nend_header")
+    path.write_bytes(PLY + header + CORNERS + TETRAHEDRON.replace(b"\n", b" 7\n"))
+    raw = same(path)
+    assert raw.faces.tolist() == [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 10**9 - 1), st.integers(0, 2), st.sampled_from('",x \n')), min_size=1)
+)
+def test_whole_numbers_are_those_of_python(written):
+    text, begin, end = "?", [], []
+    for value, zeros, after in written:
+        digits = ("0" * zeros + str(value))[-9:]
+        begin.append(len(text))
+        end.append(len(text) + len(digits))
+        text += digits + after
+    found = whole_numbers(
+        np.frombuffer(text.encode(), dtype=np.uint8), np.array(begin), np.array(end, dtype=np.int64)
+    )
+    assert found.tolist() == [int(text[a:b]) for a, b in zip(begin, end, strict=True)]
+
+
+@pytest.mark.parametrize("text", ["", "-1", "1.5", "1e3", "x", " 12", "1234567890"])
+def test_what_is_no_whole_number(text):
+    found = whole_numbers(
+        np.frombuffer(f"?{text}?".encode(), dtype=np.uint8), np.array([1]), np.array([1 + len(text)])
+    )
+    assert found is None
+
+
 def test_words_in_capitals_and_exponents(tmp_path):
     text = (
         "SOLID A\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 1E0 2e-1 +3\nVERTEX 4 5 6.5\nVERTEX 7 -8 9\n"
@@ -76,10 +111,13 @@ def test_words_in_capitals_and_exponents(tmp_path):
 def test_binary_ply_of_any_order_and_more_properties(gear, tmp_path, order, more):
     vertices, faces = gear
     kinds = [("nx", "f4")] * more + [("x", "f8"), ("y", "f8"), ("z", "f8")] + [("red", "u1")] * more
+    beside = [("flags", "u1"), ("area", "f8")] * more
     table = np.zeros(len(vertices), dtype=[(n, order + k) for n, k in kinds])
     for axis, column in zip("xyz", vertices.T, strict=True):
         table[axis] = column
-    rows = np.zeros(len(faces), dtype=[("n", "u1"), ("v", order + "u4", 3)])
+    rows = np.zeros(
+        len(faces), dtype=[("n", "u1"), ("v", order + "u4", 3), *((n, order + k) for n, k in beside)]
+    )
     rows["n"], rows["v"] = 3, faces
     words = {"f4": "float", "f8": "double", "u1": "uchar"}
     header = [
@@ -90,6 +128,7 @@ def test_binary_ply_of_any_order_and_more_properties(gear, tmp_path, order, more
         *(f"property {words[k]} {n}" for n, k in kinds),
         f"element face {len(faces)}",
         "property list uchar uint vertex_indices",
+        *(f"property {words[k]} {n}" for n, k in beside),
         "end_header\n",
     ]
     path = tmp_path / "a.ply"
@@ -260,7 +299,7 @@ def test_files_that_break_off_or_lie(tmp_path, name, content, words):
     ("old", "new", "words"),
     [
         (b'v1="0"', b'v1="99999"', "faces name vertices 0 to 99999"),
-        (b'v1="0"', b'v1="-1"', "faces name vertices -1 to"),
+        (b'v1="0"', b'v1="-1"', "a corner names no vertex"),
         (b'x="', b'x="q', "no number"),
         (b'v2="', b'v2="0.5', "no number|no whole"),
     ],

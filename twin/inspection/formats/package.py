@@ -2,12 +2,15 @@
 
 import re
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.inspection.formats.raw import DamagedError, Raw, numbers
+from twin.inspection.beside import Beside
+from twin.inspection.formats.digits import whole_numbers
+from twin.inspection.formats.raw import DamagedError, Raw, listed_floats, numbers
 from twin.inspection.solid import Ints
 
 UNIT = re.compile(rb'<model\b[^>]*?\bunit="([^"]*)"')
@@ -17,7 +20,7 @@ TRANSFORM = re.compile(rb'\btransform="([^"]*)"')
 BLANKS, NUMERALS = b" \t\r\n", b"0123456789.+-"
 VERTEX, TRIANGLE = b'<vrtxx=""y=""z=""/>', b'<trianglev=""v=""v=""/>'
 """elements without blanks and numerals; e and E are numerals of coordinates"""
-QUOTES = bytes.maketrans(b'"', b" ")
+COMMAS = bytes.maketrans(b"=", b",")
 
 
 def read_3mf(path: Path) -> Raw | None:
@@ -28,7 +31,7 @@ def read_3mf(path: Path) -> Raw | None:
             if len(models) != 1:
                 return None
             text = package.read(models[0])
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError, EOFError, ValueError) as fault:
+    except (zipfile.BadZipFile, zlib.error, RuntimeError, OSError, EOFError, ValueError) as fault:
         raise DamagedError(f"its package cannot be opened ({fault})") from fault
     begin, end = text.find(b"<vertices>"), text.rfind(b"</triangles>")
     middle = (text.find(b"</vertices>", begin), text.find(b"<triangles>", begin))
@@ -40,14 +43,12 @@ def read_3mf(path: Path) -> Raw | None:
     if b"<component" in around or around.count(b"triangles>") != 1 or around.count(b"vertices>") != 1:
         return None
     places, faces = text[begin + 10 : middle[0]], text[middle[1] + 11 : end]
-    if _only(places, BLANKS + NUMERALS + b"eE", VERTEX) and _only(faces, BLANKS + NUMERALS, TRIANGLE):
-        found = _numbers_of(places, faces)
-        if found is None:
-            return None
-        points, corners = found
-    elif all(places.count(word) == places.count(b"<") for word in (b' x="', b' y="', b' z="', b"/>")):
-        raise DamagedError("a coordinate or a corner is no number")
-    else:
+    named = Beside(lambda: _corners(faces))
+    points = _points(places)
+    corners = named.result()
+    if points is None or corners is None:
+        if all(places.count(word) == places.count(b"<") for word in (b' x="', b' y="', b' z="', b"/>")):
+            raise DamagedError("a coordinate is no number, or a corner names no vertex")
         return None  # other attributes, another order, comments
     unit = UNIT.search(head)
     return Raw(
@@ -64,22 +65,30 @@ def _only(text: bytes, numerals: bytes, element: bytes) -> bool:
     return not rest and bare == many * element
 
 
-def _numbers_of(places: bytes, faces: bytes) -> tuple[NDArray[np.float64], Ints] | None:
-    """Return the coordinates (n, 3) of elements of vertices and the corners (m, 3) of triangles.
-
-    None where a triangle's corners are not in their order.
-    """
+def _points(places: bytes) -> NDArray[np.float64] | None:
+    """Return the coordinates (n, 3) of elements of vertices; None where something else stands there."""
+    if not _only(places, BLANKS + NUMERALS + b"eE", VERTEX):
+        return None
     plain = places.count(b"e") == 2 * places.count(b"<") and b"E" not in places
     bare = places if plain else places.replace(b"vertex", b"")  # else an e may be an exponent's
-    points = numbers(bare.translate(QUOTES, b"<vrtxyz=/>" + BLANKS + b"e" * plain))
-    # with the 1, 2, 3 of v1, v2, v3 before each
-    corners = numbers(faces.translate(QUOTES, b"<triangle v=/>" + BLANKS), np.int64)
-    if len(points) != 3 * places.count(b"<") or len(corners) != 6 * faces.count(b"<"):
-        raise DamagedError("a coordinate or a corner is no number")
-    named = corners.reshape(-1, 6)
-    if (named[:, ::2] != (1, 2, 3)).any():
+    listed = bare.translate(COMMAS, b'<vrtxyz"/>' + BLANKS + b"e" * plain)
+    points = listed_floats(listed[1:])
+    if points is None:
+        points = numbers(listed.replace(b",", b" "))
+    return points.reshape(-1, 3) if len(points) == 3 * places.count(b"<") else None
+
+
+def _corners(faces: bytes) -> Ints | None:
+    """Return the corners (m, 3) of elements of triangles; None where something else stands there."""
+    if not _only(faces, BLANKS + NUMERALS, TRIANGLE):
         return None
-    return points.reshape(-1, 3), np.ascontiguousarray(named[:, 1::2])
+    text = np.frombuffer(faces, dtype=np.uint8)
+    quotes = np.flatnonzero(text == ord('"')).reshape(-1, 6)
+    opening, closing = quotes[:, ::2], quotes[:, 1::2]
+    if (text[opening - 2] != np.frombuffer(b"123", dtype=np.uint8)).any():
+        return None  # another order
+    corners = whole_numbers(text, (opening + 1).ravel(), closing.ravel())
+    return None if corners is None else corners.reshape(-1, 3)
 
 
 def _placed(points: np.ndarray, item: bytes) -> np.ndarray:

@@ -47,17 +47,21 @@ def read_ply(path: Path) -> Raw | None:
     plain = all(len(words) == 2 and words[0] in TYPES for words in scalars)
     if not (plain and {b"x", b"y", b"z"} <= set(names) and len(set(names)) == len(names)):
         return None
-    if len(corners) != 1 or len(corners[0]) != 4 or corners[0][0] != b"list" or corners[0][3] not in LISTS:
+    if len(corners) == 0 or len(corners[0]) != 4 or corners[0][0] != b"list" or corners[0][3] not in LISTS:
         return None
-    if corners[0][1] not in TYPES or corners[0][2] not in TYPES:
+    (_, counter, index, _), *more = corners
+    if not {counter, index} <= set(TYPES) or any(len(words) != 2 or words[0] not in TYPES for words in more):
         return None
     if form == b"ascii":
-        return _in_words(data[begin:], count, triangles, names)
+        return _in_words(data[begin:], count, triangles, names, 4 + len(more))
     if form not in ORDERS:
         raise DamagedError(f"its format is {form.decode('latin-1')!r}")
     order = ORDERS[form]
     vertex = np.dtype([(name.decode("latin-1"), order + TYPES[kind]) for kind, name in scalars])
-    face = np.dtype([("count", order + TYPES[corners[0][1]]), ("corners", order + TYPES[corners[0][2]], 3)])
+    face = np.dtype(
+        [("count", order + TYPES[counter]), ("corners", order + TYPES[index], 3)]
+        + [(f"more {k}", order + TYPES[kind]) for k, (kind, _) in enumerate(more)]
+    )
     return _binary(memoryview(data)[begin:], count, triangles, vertex, face)
 
 
@@ -79,21 +83,23 @@ def _binary(body: memoryview, count: int, triangles: int, vertex: np.dtype, face
 def _ends_early(body: memoryview, faces: int, face: np.dtype) -> bool:
     """Walk through faces of any number of corners: does the file end before them?"""
     counter, corner = face["count"], face["corners"].base
+    more = face.itemsize - counter.itemsize - face["corners"].itemsize
     at = 0
     for _ in range(faces):
         if at + counter.itemsize > len(body):
             return True
-        at += counter.itemsize + int(np.frombuffer(body, counter, 1, at)[0]) * corner.itemsize
+        at += counter.itemsize + int(np.frombuffer(body, counter, 1, at)[0]) * corner.itemsize + more
     return at > len(body)
 
 
-def _in_words(body: bytes, count: int, triangles: int, names: list[bytes]) -> Raw | None:
+def _in_words(body: bytes, count: int, triangles: int, names: list[bytes], width: int) -> Raw | None:
+    """`width` is how many numbers a triangle has: 3, its corners, and what else is said of it."""
     values = numbers(body)
     size = count * len(names)
-    if len(values) < size + 4 * triangles:
+    if len(values) < size + width * triangles:
         raise DamagedError(f"it announces {count} vertices and {triangles} faces and ends within them")
-    faces = values[size : size + 4 * triangles].reshape(-1, 4)
-    if len(values) != size + 4 * triangles or (faces[:, 0] != 3).any():
+    faces = values[size : size + width * triangles].reshape(-1, width)
+    if len(values) != size + width * triangles or (faces[:, 0] != 3).any():
         return None
     points = values[:size].reshape(count, len(names))[:, [names.index(axis) for axis in (b"x", b"y", b"z")]]
-    return Raw(vertices=points, faces=indices(faces[:, 1:]))
+    return Raw(vertices=points, faces=indices(faces[:, 1:4]))

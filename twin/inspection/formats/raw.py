@@ -3,14 +3,13 @@
 import warnings
 from dataclasses import dataclass
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.inspection.solid import Ints
 
 COMMAS = bytes.maketrans(b" \t\r\n", b",,,,")
-BLOCK = 1 << 23
+BLOCK = 1 << 20
 """bytes read at a time"""
 
 
@@ -52,20 +51,24 @@ def _floats(text: bytes) -> NDArray[np.float64] | None:
 
     It knows neither `.5` nor `+1` nor `nan`.
     """
-    listed = text.translate(COMMAS).replace(b",,", b",").replace(b",,", b",").strip(b",")
+    return listed_floats(text.translate(COMMAS).replace(b",,", b",").replace(b",,", b",").strip(b","))
+
+
+def listed_floats(listed: bytes) -> NDArray[np.float64] | None:
+    """Return the floats (n,) of a list with a comma between each two; None if it is anything else."""
+    import msgspec  # noqa: PLC0415 - binary files need none of this
+
+    decoder = msgspec.json.Decoder(list[float])
     blocks, begin = [], 0
     try:
         while begin < len(listed):
             end = listed.find(b",", begin + BLOCK)
             end = len(listed) if end < 0 else end
-            blocks.append(np.array(_DECODER.decode(b"[%b]" % listed[begin:end])))
+            blocks.append(np.array(decoder.decode(b"[%b]" % listed[begin:end])))
             begin = end + 1
     except msgspec.MsgspecError:
         return None
-    return np.concatenate(blocks)
-
-
-_DECODER = msgspec.json.Decoder(list[float])
+    return np.concatenate(blocks) if blocks else None
 
 
 def indices(values: NDArray[np.float64]) -> Ints:
