@@ -3,23 +3,15 @@
 import json
 import resource
 import time
-from pathlib import Path
 
 from benchmarks.inspection import inspection
+from benchmarks.machine import machine_stages
 from benchmarks.reading import program_of, reading
-from controller.cnc import Controller
 from controller.dry_run import dry_run
-from controller.language.source import load_program, parse_program
+from controller.language.source import parse_program
 from controller.tables.parameters import delivered
 from twin.benchmark.cases import CASES
 from twin.benchmark.kernel import kernel_figures, scaling_figures
-from twin.job import read_job
-from twin.machine import IdealMachine, MujocoMachine
-from twin.presets import cutters_of, settings_of
-from twin.session import record
-from twin.setup import make_ready
-
-SCENES = Path(__file__).parents[1] / "scenes"
 
 
 def say(**figures: object) -> None:
@@ -43,34 +35,13 @@ def controller_blocks(kind: str, blocks: int) -> None:
     )
 
 
-def machine_ticks(scene: str = "hexagon_af17") -> None:
-    """Control ticks of the physical machine, against machine time."""
-    job = read_job(SCENES / scene)
-    cutters = cutters_of(job)
-    ready, settings = make_ready(job, cutters), settings_of(job, cutters)
-    program = load_program(job.program)
-    for name, machine in (
-        ("ideal", IdealMachine(len(ready.tools[0].assembly.joints))),
-        ("mujoco", MujocoMachine(ready.tools[0].assembly)),
-    ):
-        controller = Controller(program, parameters=settings.parameters, offsets=settings.offsets)
-        start = time.perf_counter()
-        ticks = len(record(controller, machine, ready).recording.time_s)
-        seconds = time.perf_counter() - start
-        say(
-            case=f"run {name}",
-            scene=scene,
-            ticks_per_s=ticks / seconds,
-            times_real_time=ticks / 1000 / seconds,
-        )
-
-
 for figures in inspection():
     say(**figures)
 for figures in reading():
     say(**figures)
 controller_blocks("plain", 1_000_000)
-machine_ticks()
+for figures in machine_stages():
+    say(**figures)
 for name in CASES:
     say(**kernel_figures(name))
 for figures in scaling_figures():

@@ -72,7 +72,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         settings = settings_of(job, cutters, events=options.events)
         program = load_program(job.program)
         foreseen, advice = advised_run(job, cutters, settings, program)
-        ready = make_ready(job, cutters, lowest_z_mm=_lowest_z(job, foreseen))
+        ready = make_ready(job, cutters, lowest_z_mm=lowest_z(job, foreseen))
         require_analogue(ready, settings.parameters)
         cycle = foreseen.cycle_time_s
         blank = job.work.blank()
@@ -151,7 +151,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     return outcome
 
 
-def _lowest_z(job: Job, foreseen: DryRun) -> float | None:
+def lowest_z(job: Job, foreseen: DryRun) -> float | None:
     """How far the program takes the tool's centre towards the chuck, from the front face [mm]; None where the
     dry run ended at a touch that only a machine can tell of."""
     if foreseen.alarms and any(warning.number == "HT9133" for warning in foreseen.warnings):

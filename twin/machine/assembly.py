@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.errors import InputError
+from twin.machine.bare import bare
 from twin.machine.drive import AxisDrive, DriveKind
 from twin.machine.spec import MachineSpec, Setup
 from twin.machine.stylus import StylusMount, mount_stylus
@@ -62,7 +63,9 @@ class Assembly:
     mjcf: mujoco.MjSpec
     """editable; with everything visible, lights and cameras"""
     model: mujoco.MjModel
-    """compiled for physics: nothing that is only seen"""
+    """compiled for distances: nothing that is only seen"""
+    joints_alone: mujoco.MjModel
+    """compiled for the drives: no shapes; the same qpos as `model`"""
     stylus: StylusMount | None = None
     """the touch probe, where one is mounted"""
 
@@ -133,11 +136,12 @@ def assemble(
     physics.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR | mujoco.mjtDisableBit.mjDSBL_ISLAND
     try:
         model = physics.compile()
+        joints_alone = bare(physics, model)
     except ValueError as cause:
         raise InputError(
             f"machine model {spec.name!r} does not compile: {cause}", place=spec.place
         ) from cause
-    return Assembly(spec=spec, setup=setup, mjcf=mjcf, model=model, stylus=stylus)
+    return Assembly(spec=spec, setup=setup, mjcf=mjcf, model=model, joints_alone=joints_alone, stylus=stylus)
 
 
 def _require_sizes(work: WorkMount, tool: ToolMount, zero: MachineZero) -> None:

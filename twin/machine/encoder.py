@@ -5,6 +5,10 @@ from collections.abc import Callable
 
 from twin.machine.drive import AxisDrive
 
+WHOLE = 1.5 * 2.0**52
+"""added to a float below 2^51 and taken away again it leaves the nearest whole number, ties to even, as
+`round` does, in a third of the time"""
+
 
 def encoder(axis: AxisDrive) -> Callable[[float], float]:
     """The reading [m | rad] of a true motor-side position, both referred to the axis.
@@ -18,13 +22,13 @@ def encoder(axis: AxisDrive) -> Callable[[float], float]:
         return position
 
     def in_counts(position: float) -> float:
-        return round(position / count) * count
+        return (position / count + WHOLE - WHOLE) * count
 
     def wavy(position: float) -> float:
         return position + amplitude * math.sin(order * position)
 
     def wavy_in_counts(position: float) -> float:
-        return round((position + amplitude * math.sin(order * position)) / count) * count
+        return in_counts(wavy(position))
 
     if amplitude:
         return wavy_in_counts if count else wavy

@@ -5,32 +5,39 @@ Under load the spindle runs slower than it is told; beyond M_b it stalls.
 """
 
 from twin.machine.drive import AxisDrive
+from twin.machine.encoder import encoder
+from twin.machine.terminals import Terminals
 
 
 class Induction:
-    """One spindle's motor at work; SI, referred to the axis."""
+    """One spindle's motor at work; SI, referred to the axis. Its encoder is read for others."""
 
-    __slots__ = ("_breakdown", "_limit", "_period", "_speed_limit", "previous", "reference")
+    __slots__ = ("_at", "_breakdown", "_limit", "_period", "_previous", "_read", "_reference", "_speed_limit")
 
-    def __init__(self, axis: AxisDrive, period_s: float) -> None:
+    def __init__(self, axis: AxisDrive, period_s: float, at: Terminals) -> None:
+        self._at = at
+        self._read = encoder(axis)
         self._breakdown = axis.breakdown_slip
         self._limit = axis.force_limit
         self._speed_limit = axis.speed_limit
         self._period = period_s
-        self.reference = 0.0
-        """setpoint of this instant; only its speed is obeyed"""
-        self.previous = 0.0
+        self._reference = 0.0
+        self._previous = 0.0
 
-    def force(self, target: float, speed: float) -> float:
-        """Torque over the coming period at a shaft speed, when the setpoint moves on to `target`."""
-        field = (target - self.reference) / self._period
-        self.previous, self.reference = self.reference, target
-        slip = min(max(field, -self._speed_limit), self._speed_limit) - speed
-        return kloss(slip, self._breakdown, self._limit)
+    def force(self, target: float) -> None:
+        """Turn over the coming period, at whose end the setpoint is `target`; only its speed is obeyed."""
+        field = (target - self._reference) / self._period
+        self._previous, self._reference = self._reference, target
+        slip = min(max(field, -self._speed_limit), self._speed_limit) - self._at.speed[0]
+        self._at.force[0] = kloss(slip, self._breakdown, self._limit)
+
+    def observe(self) -> None:
+        """Read the encoder at the end of a period."""
+        self._at.reading[0] = self._read(self._at.position[0])
 
     def speed(self, period_s: float) -> float:
         """Commanded speed over the last period."""
-        return (self.reference - self.previous) / period_s
+        return (self._reference - self._previous) / period_s
 
 
 def kloss(slip: float, breakdown_slip: float, breakdown_torque: float) -> float:

@@ -2,7 +2,6 @@
 
 # pyright: reportAttributeAccessIssue=false
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import mujoco  # its bindings are compiled and carry no types
@@ -12,8 +11,8 @@ from controller.clock import Chunk, Feedback, Floats, Follow, Load, MachineAlarm
 from twin.errors import InputError
 from twin.machine.assembly import Assembly
 from twin.machine.backlash import Backlash
+from twin.machine.bare import stop_the_clock
 from twin.machine.drive import AxisDrive, DriveKind
-from twin.machine.encoder import encoder
 from twin.machine.following import follow, require_chunk
 from twin.machine.induction import Induction, steepest
 from twin.machine.loops import Loops
@@ -21,21 +20,18 @@ from twin.machine.pressing import Pressing
 from twin.machine.servo import Gains, Servo, tune
 from twin.machine.stability import require_stable
 from twin.machine.stylus import Stylus
+from twin.machine.terminals import Terminals, terminals, view
 from twin.machine.watching import MachineError, Watcher, require_probe, speed_reached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Axis:
-    """One axis: its drive at work, and where MuJoCo keeps its state."""
+    """One axis: its drive at work, and where it is wired to MuJoCo."""
 
     drive: AxisDrive
     loop: Servo | Induction
-    read: Callable[[float], float]
-    """encoder: motor-side position to reading, both referred to the axis"""
     backlash: Backlash
-    motor: int
-    qpos: int
-    dof: int
+    at: Terminals
     rotary: bool
 
 
@@ -60,34 +56,34 @@ class MujocoMachine:
 
     def __init__(self, assembly: Assembly) -> None:
         """Tune the drives to the inertia as mounted. Raises InputError where they would be unstable."""
-        spec, model = assembly.spec, assembly.model
+        spec, model = assembly.spec, assembly.joints_alone
         drives, inertia = assembly.drives(), assembly.inertia()
         gains = [tune(d, float(i)) for d, i in zip(drives, inertia.diagonal(), strict=True)]
         _require_steady(assembly, drives, inertia, gains)
         period = spec.control_period_s
+        stop_the_clock()
         self.assembly = assembly
         self.data = mujoco.MjData(model)
-        """the physical state, for views; changing it changes the machine"""
+        """the physical state of `assembly.joints_alone`, for views; changing it changes the machine"""
+        self._reading = np.zeros(len(drives))
+        self._tripped: list[Servo] = []
         self._axes: list[_Axis] = []
-        for name, drive, gain in zip(assembly.joints, drives, gains, strict=True):
-            joint = model.joint(name)
+        for k, (name, drive, gain) in enumerate(zip(assembly.joints, drives, gains, strict=True)):
+            at = terminals(model, self.data, name, view(self._reading, k))
             servo = drive.drive.kind is DriveKind.SERVO
             self._axes.append(
                 _Axis(
                     drive=drive,
-                    loop=Servo(gain, period) if servo else Induction(drive, period),
-                    read=encoder(drive),
+                    loop=Servo(drive, gain, period, at, trip=self._tripped.append)
+                    if servo
+                    else Induction(drive, period, at),
                     backlash=Backlash(drive.backlash, drive.drive.coulomb_friction),
-                    motor=model.actuator(name).id,
-                    qpos=int(joint.qposadr[0]),
-                    dof=int(joint.dofadr[0]),
-                    rotary=joint.type[0] == mujoco.mjtJoint.mjJNT_HINGE,
+                    at=at,
+                    rotary=model.joint(name).type[0] == mujoco.mjtJoint.mjJNT_HINGE,
                 )
             )
         self._units = np.array([d.unit for d in drives])
-        self._qpos = [axis.qpos for axis in self._axes]
-        self._overload = [max(1, round(d.drive.overload_time_s / period)) for d in drives]
-        self._reading = [0.0] * len(self._axes)
+        self._qpos = [int(model.joint(name).qposadr[0]) for name in assembly.joints]
         self._watcher = Watcher()
         self._stylus = None
         if assembly.stylus is not None:
@@ -137,74 +133,68 @@ class MujocoMachine:
 
         Plain floats in one loop: on arrays this short numpy would cost more than the physics.
         """
-        model, data, axes = self.assembly.model, self.data, self._axes
-        substeps = self.assembly.spec.substeps
-        qpos, qvel, ctrl, applied = data.qpos, data.qvel, data.ctrl, data.qfrc_applied
-        servos = [
-            (k, a.motor, a.loop, a.drive.error_limit, self._overload[k])
-            for k, a in enumerate(axes)
-            if isinstance(a.loop, Servo)
-        ]
-        inductions = [
-            (k, a.motor, a.dof, a.loop) for k, a in enumerate(axes) if isinstance(a.loop, Induction)
-        ]
-        readers = [(a.read, a.qpos) for a in axes]
-        couplings = [(c, *self._follower(c), axes[c.master].drive.unit) for c in chunk.couplings]
-        dofs = [a.dof for a in axes]
+        model, data, stylus, tripped = self.assembly.joints_alone, self.data, self._stylus, self._tripped
+        step, substeps = mujoco.mj_step, self.assembly.spec.substeps
+        gears = [self._gear(c) for c in chunk.couplings]
+        slaves = [slave for _, slave, _, _ in gears]
+        forces = [a.loop.force for a in self._axes]
+        observers = [a.loop.observe for a in self._axes if a.loop not in slaves]
+        qpos, reading = data.qpos.data, self._reading.data
+        # rows of what was, as MuJoCo and the encoders hold it
+        positions, readings = bytearray(), bytearray()
         setpoint = chunk.setpoint[:limit].copy()
-        positions: list[list[float]] = []
-        readings: list[list[float]] = []
         reached, latch = False, None
-        stylus = self._stylus
-        applied[:] = 0.0
-        m = self._reading
+        before = self._reading
+        tripped.clear()
+        data.qfrc_applied[:] = 0.0
         for k, target in enumerate((setpoint * self._units).tolist()):
-            for c, slave, _, _ in couplings:
-                target[c.slave] = slave.extrapolated()
-            for axis, motor, servo, _, _ in servos:
-                ctrl[motor] = servo.force(target[axis], m[axis])
-            for axis, motor, dof, induction in inductions:
-                ctrl[motor] = induction.force(target[axis], float(qvel[dof]))
+            for c, slave, _, _ in gears:
+                target[c.slave] = slave.extrapolated
+            for force, goal in zip(forces, target):  # noqa: B905 - both as long as the axes
+                force(goal)
             if pressing is not None:
-                spindle = axes[pressing.spindle]
-                applied[dofs] = pressing.feel(k, float(qpos[spindle.qpos]), float(qvel[spindle.dof]))
+                self._press(pressing, k)
             if stylus is not None:
+                before = self._reading.copy()
                 stylus.prepare(k, data)
-            mujoco.mj_step(model, data, substeps)
-            q = qpos.tolist()
-            before = m
-            m = [read(q[at]) for read, at in readers]
-            positions.append(q)
-            readings.append(m)
-            for c, slave, unit, master_unit in couplings:
-                followed = follow(c, float(chunk.setpoint[k, c.slave]), m[c.master] / master_unit)
+            step(model, data, substeps)
+            for observe in observers:
+                observe()
+            for c, slave, unit, master in gears:
+                followed = follow(
+                    c, float(chunk.setpoint[k, c.slave]), master.at.reading[0] / master.drive.unit
+                )
                 setpoint[k, c.slave] = followed
-                slave.reference = followed * unit
-            alarm = False
-            for axis, _, servo, error_limit, overload in servos:
-                if abs(servo.reference - m[axis]) > error_limit or servo.periods_at_limit >= overload:
-                    alarm = True
+                slave.follow(followed * unit)
+            positions += qpos
+            readings += reading
             if stylus is not None:
-                share = stylus.follow(data)
-                if share is not None:
-                    latch = np.array(before) + share * (np.array(m) - before)
-                alarm = alarm or stylus.alarm is not None
-            reached = latch is not None or (watch is not None and self._holds(watch, m))
-            if alarm or reached:
+                if (share := stylus.follow(data)) is not None:
+                    latch = before + share * (self._reading - before)
+                if stylus.alarm is not None:
+                    break
+            reached = latch is not None or (watch is not None and self._holds(watch))
+            if reached or tripped:
                 break
-        self._reading = m
-        shape = len(positions), len(axes)
-        motor_side = np.array(positions).reshape(len(positions), model.nq)[:, self._qpos]
+        motor_side = np.frombuffer(positions).reshape(-1, model.nq)[:, self._qpos]
         return _Stretch(
-            setpoint=setpoint[: len(positions)],
+            setpoint=setpoint[: len(motor_side)],
             motor=motor_side,
-            measured=np.array(readings).reshape(shape),
+            measured=np.frombuffer(readings).reshape(-1, len(self._axes)),
             reached=reached,
             latch=latch,
         )
 
-    def _follower(self, coupling: Follow) -> tuple[Servo, float]:
-        """Loop and unit of a coupling's slave. Raises MachineError where it is no servo."""
+    def _press(self, pressing: Pressing, row: int) -> None:
+        """Put the load of a tick on the axes."""
+        spindle = self._axes[pressing.spindle].at
+        pushes = pressing.feel(row, spindle.position[0], spindle.speed[0])
+        for axis, push in zip(self._axes, pushes, strict=True):
+            axis.at.load[0] = push
+
+    def _gear(self, coupling: Follow) -> tuple[Follow, Servo, float, _Axis]:
+        """A coupling with its slave's loop and unit, and its master. Raises MachineError for a slave that is
+        no servo."""
         axis = self._axes[coupling.slave]
         if not isinstance(axis.loop, Servo):
             raise MachineError(
@@ -212,7 +202,7 @@ class MujocoMachine:
                 "position loop",
                 remedy='kind = "servo" for this drive',
             )
-        return axis.loop, axis.drive.unit
+        return coupling, axis.loop, axis.drive.unit, self._axes[coupling.master]
 
     def _load_side(self, motor: Floats, forces: Floats | None) -> Floats:
         """(ticks, axes) positions of the load behind the motors' [m | rad]."""
@@ -222,50 +212,42 @@ class MujocoMachine:
         ]
         return np.column_stack(columns)
 
-    def _holds(self, watch: Watch, m: list[float]) -> bool:
+    def _holds(self, watch: Watch) -> bool:
         """Whether the watched axes (`latch_axes`, none named = all) fulfil the condition after this tick.
 
         A spindle without a position loop is always in position. Touches are the stylus's affair.
         """
         if watch.kind is WatchKind.SKIP:
             return False
-        watched = watch.latch_axes or range(len(self._axes))
+        axes = [self._axes[k] for k in watch.latch_axes or range(len(self._axes))]
         if watch.kind is WatchKind.IN_POSITION:
-            return all(
-                abs(a.loop.reference - m[k]) <= a.drive.in_position
-                for k, a in ((k, self._axes[k]) for k in watched)
-                if isinstance(a.loop, Servo)
-            )
-        period, v = self.assembly.spec.control_period_s, self.data.qvel
-        axes = [self._axes[k] for k in watched]
-        return all(speed_reached(a.loop.speed(period), v[a.dof]) for a in axes if a.rotary)
+            return all(abs(a.loop.lag) <= a.drive.in_position for a in axes if isinstance(a.loop, Servo))
+        period = self.assembly.spec.control_period_s
+        return all(speed_reached(a.loop.speed(period), a.at.speed[0]) for a in axes if a.rotary)
 
     def _alarms(self) -> tuple[MachineAlarm, ...]:
-        """Axes whose following error exceeds its limit now, or whose motor has stood too long at its own."""
+        """Of the probe, and of axes whose following error exceeds its limit now, or whose motor has stood too
+        long at its own."""
         alarms: list[MachineAlarm] = []
         if self._stylus is not None and self._stylus.alarm is not None:
             alarms.append(self._stylus.alarm)
         for k, (name, axis) in enumerate(zip(self.assembly.joints, self._axes, strict=True)):
             loop, drive = axis.loop, axis.drive
-            if not isinstance(loop, Servo):
+            if not isinstance(loop, Servo) or loop not in self._tripped:
                 continue
-            error = loop.reference - self._reading[k]
-            if abs(error) > drive.error_limit:
-                moving = loop.reference != loop.previous
+            if abs(loop.lag) > drive.error_limit:
                 unit = "deg" if axis.rotary else "mm"
-                number = "SV0411" if moving else "SV0410"
+                number = "SV0411" if loop.moving else "SV0410"
                 found = (
-                    f"following error {error / drive.unit:.4g} {unit}, "
+                    f"following error {loop.lag / drive.unit:.4g} {unit}, "
                     f"limit {drive.error_limit / drive.unit:g} {unit}"
                 )
-            elif loop.periods_at_limit >= self._overload[k]:
+            else:
                 number = "SV0436"
                 found = (
                     f"motor at its limit of {drive.drive.torque_limit:g} N m for "
                     f"{drive.drive.overload_time_s:g} s"
                 )
-            else:
-                continue
             alarms.append(MachineAlarm(number=number, axis=k, found=f"{name}: {found}"))
         return tuple(alarms)
 

@@ -4,12 +4,18 @@
     force  = Kp (demand - v) + Ki ∫(demand - v) dt + k_a J d²r/dt², limited
 
 m is what the encoder reads, v its difference over the last period: a drive knows nothing else of its axis.
-In scalars: at one axis per call this is several times faster than the same law on arrays.
+Position and speed are compared with the setpoint's of the same instant and the same period, so with full
+feed-forward nothing lags and nothing overshoots.
+
+In scalars, on MuJoCo's own memory: for so few axes several times faster than the same law on arrays.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from twin.machine.drive import AxisDrive
+from twin.machine.encoder import encoder
+from twin.machine.terminals import Terminals
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,25 +54,48 @@ def tune(axis: AxisDrive, inertia: float) -> Gains:
 
 
 class Servo:
-    """One drive at work; positions [m | rad], forces [N | N m]."""
+    """One drive at work; positions [m | rad], forces [N | N m]. A period is `force`, physics, `observe`."""
 
     __slots__ = (
         "_acceleration_feedforward",
+        "_error",
+        "_error_limit",
         "_force_integral",
+        "_force_now",
         "_integral_step",
         "_limit",
+        "_overload",
         "_per_period",
+        "_periods_at_limit",
         "_position",
+        "_position_now",
+        "_previous",
         "_proportional",
         "_read",
+        "_reading",
+        "_reading_now",
+        "_reference",
         "_speed_limit",
+        "_step",
+        "_trip",
         "_velocity_feedforward",
-        "periods_at_limit",
-        "previous",
-        "reference",
     )
 
-    def __init__(self, gains: Gains, period_s: float) -> None:
+    def __init__(
+        self,
+        axis: AxisDrive,
+        gains: Gains,
+        period_s: float,
+        at: Terminals,
+        *,
+        trip: Callable[["Servo"], None],
+    ) -> None:
+        """`trip` is called in every period that ends beyond the limits of following error or overload."""
+        self._position_now = at.position
+        self._force_now = at.force
+        self._reading_now = at.reading
+        self._read = encoder(axis)
+        self._trip = trip
         self._position = gains.position
         self._proportional = gains.proportional
         self._limit = gains.limit
@@ -75,52 +104,79 @@ class Servo:
         self._velocity_feedforward = gains.velocity_feedforward / period_s
         self._acceleration_feedforward = gains.acceleration_feedforward / period_s**2
         self._integral_step = gains.integral * period_s
+        self._error_limit = axis.error_limit
+        self._overload = max(1, round(axis.drive.overload_time_s / period_s))
         self._force_integral = 0.0
-        self._read = 0.0
-        self.reference = 0.0
-        """setpoint of this instant"""
-        self.previous = 0.0
-        """setpoint of one period before"""
-        self.periods_at_limit = 0
-        """for how many periods on end the force has been at its limit"""
+        self._error = 0.0
+        self._reading = 0.0
+        self._step = 0.0
+        self._previous = 0.0
+        self._reference = 0.0
+        self._periods_at_limit = 0
 
-    def force(self, target: float, reading: float) -> float:
-        """Force over the coming period; `target` is the setpoint of its end, `reading` the encoder's now.
+    def force(self, target: float) -> None:
+        """Push over the coming period; `target` is the setpoint of its end."""
+        reference = self._reference
+        error = self._error
+        integral = self._force_integral + self._integral_step * error
+        force = (
+            self._proportional * error
+            + integral
+            + self._acceleration_feedforward * (target - reference - self._step)
+        )
+        self._previous = reference
+        self._reference = target
+        limit = self._limit
+        if -limit <= force <= limit:
+            self._force_integral = integral
+            self._periods_at_limit = 0
+            self._force_now[0] = force
+            return
+        # At the limit the integral stands still, else it would wind up.
+        self._periods_at_limit += 1
+        self._force_now[0] = limit if force > limit else -limit
+        if self._periods_at_limit >= self._overload:
+            self._trip(self)
 
-        Position and speed are compared with the setpoint's of the same instant and the same period, so with
-        full feed-forward nothing lags and nothing overshoots.
-        """
-        reference = self.reference
-        step = reference - self.previous
-        demand = self._position * (reference - reading) + self._velocity_feedforward * step
+    def observe(self) -> None:
+        """Read the encoder at the end of a period, and compare it with the setpoint of this instant."""
+        reading = self._read(self._position_now[0])
+        reference = self._reference
+        self._step = step = reference - self._previous
+        lag = reference - reading
+        demand = self._position * lag + self._velocity_feedforward * step
         fastest = self._speed_limit
         if demand > fastest:
             demand = fastest
         elif demand < -fastest:
             demand = -fastest
-        error = demand - self._per_period * (reading - self._read)
-        integral = self._force_integral + self._integral_step * error
-        force = (
-            self._proportional * error
-            + integral
-            + self._acceleration_feedforward * (target - reference - step)
-        )
-        self._read = reading
-        self.previous = reference
-        self.reference = target
-        limit = self._limit
-        if -limit <= force <= limit:
-            self._force_integral = integral
-            self.periods_at_limit = 0
-            return force
-        # At the limit the integral stands still, else it would wind up.
-        self.periods_at_limit += 1
-        return limit if force > limit else -limit
+        self._error = demand - self._per_period * (reading - self._reading)
+        self._reading = reading
+        self._reading_now[0] = reading
+        limit = self._error_limit
+        if not -limit <= lag <= limit:
+            self._trip(self)
 
+    def follow(self, setpoint: float) -> None:
+        """Observe as the slave of a gear box, whose setpoint of this instant is known only now."""
+        self._reference = setpoint
+        self.observe()
+
+    @property
     def extrapolated(self) -> float:
-        """Next setpoint of a follower, whose master is known only as far as it has been measured."""
-        return 2.0 * self.reference - self.previous
+        """Next setpoint of a slave, whose master is known only as far as it has been measured."""
+        return 2.0 * self._reference - self._previous
+
+    @property
+    def lag(self) -> float:
+        """Following error now."""
+        return self._reference - self._reading
+
+    @property
+    def moving(self) -> bool:
+        """Whether the setpoint has moved in the last period."""
+        return self._reference != self._previous
 
     def speed(self, period_s: float) -> float:
         """Commanded speed over the last period."""
-        return (self.reference - self.previous) / period_s
+        return (self._reference - self._previous) / period_s
