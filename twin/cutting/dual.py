@@ -14,6 +14,7 @@ from twin.cutting.crossings import Crossings, edge_key
 from twin.cutting.grid import Grid
 from twin.cutting.landing import Around, Ground, landed
 from twin.cutting.refine import Leaves
+from twin.cutting.sheets import NO_SHEETS, Sheets
 from twin.cutting.sweep import Sweep
 from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS, edge_at
 
@@ -37,6 +38,8 @@ class Surface:
     """(m, 3)"""
     bite: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """(n,) the bite that made each vertex, −1 = none; (0,) where nobody told"""
+    sheets: Sheets = NO_SHEETS
+    """rectangles of it"""
 
 
 @dataclass(frozen=True, slots=True)

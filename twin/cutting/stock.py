@@ -1,6 +1,7 @@
 """What manifold3d leaves of the blank."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import manifold3d
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
+from twin.cutting.sheets import Widened, restored, widened
 from twin.cutting.snapping import snapped
 from twin.errors import PartError
 
@@ -93,29 +95,89 @@ class Remains:
 def subtract(blank: Blank, *surfaces: Surface) -> Remains:
     """One boolean: the blank without the removed solids. The largest piece is the part."""
     whole = blank_solid(blank)
-    first_id = manifold3d.Manifold.reserve_ids(max(len(surfaces), 1))
-    removed = [solid(surface.vertices, surface.faces, first_id + k) for k, surface in enumerate(surfaces)]
-    left = manifold3d.Manifold.batch_boolean([whole, *removed], manifold3d.OpType.Subtract)
-    if left.is_empty():
+    wide = [widened(one.vertices, one.faces, one.sheets, blank) for one in surfaces]
+    left = _left(whole, surfaces, wide)
+    if left is None:
+        left = _left(whole, surfaces, [Widened.none(one.faces) for one in surfaces])
+    if left is None:
         raise PartError(
             "nothing is left of the blank", remedy="the cut removes all of it; check X and the tool"
         )
-    pieces = sorted(left.decompose(), key=lambda piece: -piece.volume())
-    part = pieces[0]
-    mesh = part.to_mesh64()
-    vertices, faces, kept = snapped(
-        np.array(mesh.vert_properties[:, :3]), np.array(mesh.tri_verts, dtype=np.int64)
-    )
-    first_face = np.cumsum([0, *(len(surface.faces) for surface in surfaces)])
+    vertices, faces, kept = snapped(left.vertices, left.faces)
     return Remains(
         vertices=vertices,
         faces=faces,
-        volume_mm3=part.volume(),
+        volume_mm3=_volume(left.vertices, left.faces),
         blank_volume_mm3=whole.volume(),
-        loose_volumes_mm3=tuple(piece.volume() for piece in pieces[1:]),
-        genus=part.genus(),
-        origin=_origin(mesh, first_id, first_face)[kept],
+        loose_volumes_mm3=left.loose,
+        genus=left.genus,
+        origin=left.origin[kept],
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Left:
+    """The largest piece after a boolean, in double precision."""
+
+    vertices: Floats
+    faces: Ints
+    origin: Ints
+    genus: int
+    loose: tuple[float, ...]
+
+
+def _left(whole: manifold3d.Manifold, surfaces: Sequence[Surface], wide: Sequence[Widened]) -> _Left | None:
+    """What the removed solids, seen in wide faces, leave of the blank; None for nothing, or where wide faces
+    do not do."""
+    first_id = manifold3d.Manifold.reserve_ids(max(len(surfaces), 1))
+    removed = [
+        solid(*_used(one.vertices, seen.faces), first_id + k)
+        for k, (one, seen) in enumerate(zip(surfaces, wide, strict=True))
+    ]
+    left = manifold3d.Manifold.batch_boolean([whole, *removed], manifold3d.OpType.Subtract)
+    pieces = sorted(left.decompose(), key=lambda piece: -piece.volume())
+    if left.is_empty():
+        return None
+    mesh = pieces[0].to_mesh64()
+    found = (
+        np.array(mesh.vert_properties[:, :3]),
+        np.array(mesh.tri_verts, dtype=np.int64),
+        _origin(mesh, first_id, np.cumsum([0, *(len(seen.faces) for seen in wide)])),
+    )
+    loose = tuple(piece.volume() for piece in pieces[1:])
+    if any(len(seen.replaced) for seen in wide):
+        back = None if loose else restored(*found, *_joined(surfaces, wide))
+        return None if back is None else _Left(*back, pieces[0].genus(), loose)
+    return _Left(*found, pieces[0].genus(), loose)
+
+
+def _used(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """A mesh without the vertices that no face has."""
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces] = True
+    return vertices[used], (np.cumsum(used) - 1)[faces]
+
+
+def _joined(surfaces: Sequence[Surface], wide: Sequence[Widened]) -> tuple[tuple[Floats, Ints], Widened]:
+    """All removed solids as one mesh, and as one mesh in wide faces."""
+    vertex, face = (
+        np.cumsum([0, *map(len, arrays)])
+        for arrays in ([one.vertices for one in surfaces], [one.faces for one in surfaces])
+    )
+    seen = [one.after(int(v), int(f)) for one, v, f in zip(wide, vertex, face, strict=False)]
+    fine = (
+        np.concatenate([one.vertices for one in surfaces]),
+        np.concatenate([one.faces + v for one, v in zip(surfaces, vertex, strict=False)]),
+    )
+    return fine, Widened(
+        *(np.concatenate([getattr(one, name) for one in seen]) for name in Widened.__slots__)
+    )
+
+
+def _volume(vertices: Floats, faces: Ints) -> float:
+    """Of a closed mesh [mm³]."""
+    a, b, c = (vertices[corner] for corner in faces.T)
+    return float(np.einsum("nx,nx->", a, np.cross(b, c))) / 6.0
 
 
 def _origin(mesh: manifold3d.Mesh64, first_id: int, first_face: Ints) -> Ints:

@@ -7,6 +7,7 @@ from twin.cutting.dual import Surface
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.skin import Skin
+from twin.cutting.sheets import Sheets
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,7 +40,7 @@ def tubes(chart: Chart, made: Skin) -> Surface:
     vertices = (np.concatenate([low, ring, high], axis=2) - shift) @ rotation
     # no bite made the lid and the ends
     bite = np.pad(made.bite, ((0, 0), (0, 1), (1, 1)), constant_values=-1)
-    return Surface(vertices.reshape(-1, 3), _faces(made.rising), bite.reshape(-1))
+    return Surface(vertices.reshape(-1, 3), _faces(made.rising), bite.reshape(-1), _sheets(made.rising))
 
 
 def _faces(rising: Bools) -> Ints:
@@ -57,6 +58,15 @@ def _faces(rising: Bools) -> Ints:
     cap = _ladder(around)
     ends = np.concatenate([number[cap, 0][:, ::-1], number[cap, -1]]) + first[:, 0]
     return np.concatenate([faces.reshape(-1, 3) for faces in (one, two, ends)])
+
+
+def _sheets(rising: Bools) -> Sheets:
+    """The skins without lids and ends, in the order of `_faces`."""
+    gaps, nu, nz = rising.shape
+    number = np.arange(gaps * (nu + 2) * (nz + 3)).reshape(gaps, nu + 2, nz + 3)
+    cell = np.arange(gaps * (nu + 2) * (nz + 2)).reshape(gaps, nu + 2, nz + 2)
+    both = np.stack([cell, cell + cell.size], axis=-1)
+    return Sheets(number[:, :-1, 1:-1], both[:, :nu, 1:-1])
 
 
 def _ladder(around: int) -> Ints:
