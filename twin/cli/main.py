@@ -23,6 +23,8 @@ from twin.errors import ExitCode, HobtwinError
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command. Returns the exit code of the contract: 0 fine, 1 finding, 2 usage, 3 our fault."""
     options = _parser().parse_args(arguments)
+    # no window is opened: MuJoCo need not look for what would open one
+    os.environ.setdefault("MUJOCO_GL", "disable")
     if threading.current_thread() is threading.main_thread():
         # a run that is told to stop cleans up after itself, as with Ctrl-C
         signal.signal(signal.SIGTERM, signal.default_int_handler)

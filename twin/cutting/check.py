@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
@@ -121,6 +120,8 @@ def missed(
     value = sweep.deepest(points[asked], leaf[asked], leaves.tangents).depth
     contrary = (value > 0) != removed[0, asked]
     points, value = points[asked[contrary]], value[contrary]
+    from scipy.spatial import KDTree  # noqa: PLC0415 - half a second to load, and not every cut needs it
+
     cells = np.array(grid.cell_mm)[[0, 0, 2]]
     far = KDTree(surface.vertices / cells).query(points / cells)[0] > APART
     share = len(owner) / len(leaf) * float(np.prod(grid.cell_mm))

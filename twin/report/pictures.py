@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
 from twin.inspection.result import Floats
 from twin.report.colours import STEEL
@@ -238,8 +237,19 @@ def _crevices(depth: Single, pixel: Ints, shape: tuple[int, int]) -> Single:
     filled.flat[pixel] = depth
     mask.flat[pixel] = 1.0
     radius, step = max(shape) / 60, 4
-    coarse = gaussian_filter(mask[::step, ::step], radius / step)
-    around = gaussian_filter(filled[::step, ::step], radius / step) / np.maximum(coarse, 1e-3)
+    coarse = _blurred(mask[::step, ::step], radius / step)
+    around = _blurred(filled[::step, ::step], radius / step) / np.maximum(coarse, 1e-3)
     around = around.repeat(step, axis=0).repeat(step, axis=1)[: shape[0], : shape[1]]
     buried = np.clip((around.flat[pixel] - depth) / (1.6 * radius) - 0.5, 0, 1)
     return 1 - 0.55 * buried
+
+
+def _blurred(image: Single, radius: float) -> Single:
+    """An image (h, w) seen through a Gaussian of that radius [pixels], zero beyond its edges."""
+    rows, columns = (np.arange(count, dtype=np.float32) for count in image.shape)
+    weights = [
+        np.exp(-0.5 * np.square((at[:, None] - at) / np.float32(radius)))
+        / np.float32(radius * np.sqrt(2.0 * np.pi))
+        for at in (rows, columns)
+    ]
+    return weights[0] @ image @ weights[1]

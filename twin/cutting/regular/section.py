@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from twin.cutting.motion import RigidTransform
 from twin.cutting.refine import first_cull
 from twin.cutting.regular.chart import Chart, Frame
 from twin.cutting.regular.irregular import IrregularError
+from twin.cutting.regular.spline import Spline
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -106,7 +106,7 @@ def _smooth(values: Floats, wide: int) -> Floats:
     return np.asarray(np.convolve(padded, weight / weight.sum(), mode="valid"), dtype=np.float64)
 
 
-def _where(curve: CubicSpline, radius: float, low: float, high: float) -> float:
+def _where(curve: Spline, radius: float, low: float, high: float) -> float:
     """Where a curve passes a radius between two places on its two sides."""
     rising = float(np.hypot(*curve(low))) < radius
     for _ in range(HALVINGS):
@@ -121,13 +121,13 @@ def bend(surface: Floats) -> float:
     return float(_curvature(curve, np.linspace(length[0], length[-1], 8 * len(surface))).max())
 
 
-def _curvature(curve: CubicSpline, at: Floats) -> Floats:
+def _curvature(curve: Spline, at: Floats) -> Floats:
     """Of a curve at places (n,) [1/mm]."""
     (dx, dy), (ddx, ddy) = curve(at, 1).T, curve(at, 2).T
     return np.abs((dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3)
 
 
-def _curve(surface: Floats) -> tuple[Floats, CubicSpline]:
+def _curve(surface: Floats) -> tuple[Floats, Spline]:
     """Lengths (n,) along a section, and the section as a function of it."""
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(surface, axis=0).T))])
-    return length, CubicSpline(length, surface)
+    return length, Spline.through(length, surface)
