@@ -38,6 +38,8 @@ class Surface:
     """(m, 3)"""
     bite: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """(n,) the bite that made each vertex, −1 = none; (0,) where nobody told"""
+    instant: Floats = field(default_factory=lambda: np.zeros(0))
+    """(n,) sample (fractional) of the tool's motion at which that was; (0,) where nobody told"""
     sheets: Sheets = NO_SHEETS
     """rectangles of it"""
 

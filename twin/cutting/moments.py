@@ -21,18 +21,26 @@ def moments(sweep: Sweep, motions: tuple[CutterMotion, ...], surface: Surface) -
     """
     when = np.full(len(surface.vertices), np.nan)
     made = np.flatnonzero(surface.bite >= 0)
-
-    def work(part: slice) -> None:
-        rows = made[part]
-        bite = surface.bite[rows]
-        instant = sweep.evaluate(surface.vertices[rows], bite).instant
-        tool = sweep.tool(bite)
-        for number, motion in enumerate(motions):
-            own = tool == number
-            when[rows[own]] = np.interp(instant[own], np.arange(len(motion.time_s)), motion.time_s)
-
-    in_parallel(work, (slice(low, low + BATCH) for low in range(0, len(made), BATCH)))
+    bite = surface.bite[made]
+    instant = (
+        surface.instant[made] if len(surface.instant) else _instants(sweep, surface.vertices[made], bite)
+    )
+    tool = sweep.tool(bite)
+    for number, motion in enumerate(motions):
+        own = tool == number
+        when[made[own]] = np.interp(instant[own], np.arange(len(motion.time_s)), motion.time_s)
     return when
+
+
+def _instants(sweep: Sweep, vertices: Floats, bite: Ints) -> Floats:
+    """Samples (n,) at which bites meet vertices (n, 3)."""
+
+    def work(part: slice) -> Floats:
+        return sweep.evaluate(vertices[part], bite[part]).instant
+
+    return np.concatenate(
+        [np.zeros(0), *in_parallel(work, (slice(low, low + BATCH) for low in range(0, len(bite), BATCH)))]
+    )
 
 
 def face_moments(origin: Ints, faces: Iterable[Ints], times: Iterable[Floats]) -> Floats:

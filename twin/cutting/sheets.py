@@ -66,7 +66,7 @@ def widened(vertices: Floats, faces: Ints, sheets: Sheets, blank: Blank) -> Wide
     whole = Widened.none(faces)
     if sheets.faces.size < WORTH or blank.section is not None:
         return whole
-    found = _rectangle(_deep(vertices[sheets.vertices], blank).all(axis=0))
+    found = _rectangle(np.logical_and.reduce(_deep(vertices[sheets.vertices], blank)))
     if found is None:
         return whole
     (i0, i1), (k0, k1) = found
@@ -97,7 +97,7 @@ def _rectangle(deep: Bools) -> tuple[tuple[int, int], tuple[int, int]] | None:
     i = _run(deep[:, deep.shape[1] // 2])
     if i is None:
         return None
-    k = _run(deep[i[0] : i[1] + 1].all(axis=0))
+    k = _run(np.logical_and.reduce(deep[i[0] : i[1] + 1]))
     if k is None or i[1] - i[0] < 2 * WIDE[0] or k[1] - k[0] < 2 * WIDE[1]:
         return None
     return i, k

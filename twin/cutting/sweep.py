@@ -31,10 +31,12 @@ class Deepest:
     """(n, 3) of the depth; (0, 3) unless asked for"""
     bite: Ints
     """(n,) −1 where a block has none"""
+    instant: Floats
+    """(n,) sample (fractional) of its tool's motion at which it meets the point"""
 
     def of(self, rows: Ints | NDArray[np.bool_]) -> "Deepest":
         """That at some of the points."""
-        return Deepest(self.depth[rows], self.gradient[rows], self.bite[rows])
+        return Deepest(self.depth[rows], self.gradient[rows], self.bite[rows], self.instant[rows])
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +184,7 @@ class Sweep:
         depth = np.full(len(points), -np.inf)
         slope = np.zeros((len(points) if gradient else 0, 3))
         winner = np.full(len(points), -1, dtype=np.int64)
+        instant = np.zeros(len(points))
         lists = tangents.lists
         length = np.diff(lists.start)[block]
         some = np.flatnonzero(length)
@@ -206,12 +209,12 @@ class Sweep:
                 missing = (bites < first.take(owner)) | (bites > last.take(owner))
                 height[missing] = upper[missing] = -np.inf
             found = self._highest(points[items], (bites, height, upper), start, gradient=gradient, sign=sign)
-            depth[items], winner[items] = found.depth, found.bite
+            depth[items], winner[items], instant[items] = found.depth, found.bite, found.instant
             if gradient:
                 slope[items] = found.gradient
 
         in_parallel(work, batches(np.concatenate([[0], np.cumsum(length[some])]), LISTED))
-        return Deepest(depth, slope, winner)
+        return Deepest(depth, slope, winner, instant)
 
     def _highest(
         self,
@@ -231,7 +234,7 @@ class Sweep:
         level, first = leaders(height, start)
         none = level == -np.inf
         best = self.evaluate(points, np.where(none, 0, bites[first]), gradient=gradient)
-        floor, leading, slope = best.depth, bites[first], best.gradient
+        floor, leading, slope, instant = best.depth, bites[first], best.gradient, best.instant
         floor[none], leading[none] = -np.inf, -1
         rivals = upper > floor[owner]
         rivals[first] = False
@@ -248,9 +251,10 @@ class Sweep:
             higher = deepest > floor[who]
             floor[who[higher]] = deepest[higher]
             leading[who[higher]] = bites[rivals[at[higher]]]
+            instant[who[higher]] = other.instant[at[higher]]
             if gradient:
                 slope[who[higher]] = other.gradient[at[higher]]
-        return Deepest(floor, slope, leading)
+        return Deepest(floor, slope, leading, instant)
 
     def tool(self, bite: Ints) -> Ints:
         """Number (m,) of the tool that each bite belongs to."""

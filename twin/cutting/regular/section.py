@@ -20,7 +20,7 @@ HALVINGS = 14
 NO_GAP = "there is no gap where the rolling of tool and work puts one"
 MIDDLE = 4.0
 """Times less than where it is the largest is the curvature where steps are as long as asked for."""
-GRADES = 0.67, 1.3
+GRADES = 0.67, 1.05
 """Least and most times as close as that."""
 THIN = 1e-3
 """Height of the section [mm]."""

@@ -14,9 +14,11 @@ from twin.cutting.sweep import Images, Sweep
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SETTLED = 2e-4
+SETTLED = 5e-4
 """[mm] below which one Newton step ends on the surface: what is left is its square over a radius, or, where
-another bite takes over, a share of it."""
+another bite takes over, a hundredth of it."""
+NEAR = 2e-3
+"""[mm] below which it ends near enough for the planes at the corners of a cell"""
 ROUNDS = 5
 """of Newton's method"""
 CHUNK = 1 << 14
@@ -38,6 +40,8 @@ class Skin:
     """(gaps, nu - 1, nz - 1) whether four neighbouring vertices are split from the first to the last"""
     bite: Ints
     """(gaps, nu, nz) the deepest bite at each vertex"""
+    instant: Floats
+    """(gaps, nu, nz) sample (fractional) of its tool's motion at which that is made"""
 
 
 def skin(sweep: Sweep, proved: Proved, thick: float) -> Skin:
@@ -53,11 +57,11 @@ def skin(sweep: Sweep, proved: Proved, thick: float) -> Skin:
     in_parallel(cross, _chunks(len(points)))
     points, normals = points.reshape(*shape, 3), normals.reshape(*shape, 3)
     vertices = np.ascontiguousarray(_meet(points, normals).reshape(-1, 3))
-    bite = np.zeros(len(vertices), dtype=np.int64)
+    bite, instant = np.zeros(len(vertices), dtype=np.int64), np.zeros(len(vertices))
 
     def settle(part: slice) -> None:
         nodes = _Nodes.of(proved, (chart.gaps, nu, nz), part)
-        vertices[part], bite[part] = _settled(sweep, proved, nodes, vertices[part])
+        vertices[part], bite[part], instant[part] = _settled(sweep, proved, nodes, vertices[part])
 
     in_parallel(settle, _chunks(len(vertices)))
     vertices = vertices.reshape(chart.gaps, nu, nz, 3)
@@ -65,7 +69,8 @@ def skin(sweep: Sweep, proved: Proved, thick: float) -> Skin:
     inner = points[:, 1:-1, 1:-1], normals[:, 1:-1, 1:-1]
     one = _off(*inner, vertices[:, :-1, :-1] + vertices[:, 1:, 1:])
     other = _off(*inner, vertices[:, 1:, :-1] + vertices[:, :-1, 1:])
-    return Skin(vertices, one < other, bite.reshape(vertices.shape[:3]))
+    shape = vertices.shape[:3]
+    return Skin(vertices, one < other, bite.reshape(shape), instant.reshape(shape))
 
 
 def _chunks(count: int) -> Iterator[slice]:
@@ -98,22 +103,22 @@ class _Nodes:
         return proved.images(points, self.gap[rows], self.cell[rows])
 
 
-def _settled(sweep: Sweep, proved: Proved, nodes: _Nodes, guess: Floats) -> tuple[Floats, Ints]:
-    """Vertices (n, 3) brought onto the surface, and the bites (n,) that make it there."""
-    vertices, bite = guess.copy(), np.zeros(len(guess), dtype=np.int64)
+def _settled(sweep: Sweep, proved: Proved, nodes: _Nodes, guess: Floats) -> tuple[Floats, Ints, Floats]:
+    """Vertices (n, 3) brought onto the surface, the bites (n,) that make it there, and when."""
+    vertices, bite, instant = guess.copy(), np.zeros(len(guess), dtype=np.int64), np.zeros(len(guess))
     left = np.arange(len(vertices))
     for _ in range(ROUNDS):
         at = vertices[left]
         found = sweep.deepest(
             at, nodes.block[left], proved.tangents, gradient=True, images=nodes.images(proved, at, left)
         )
-        bite[left] = found.bite
+        bite[left], instant[left] = found.bite, found.instant
         step = found.depth / np.einsum("nx,nx->n", found.gradient, found.gradient)
         vertices[left] = at - step[:, None] * found.gradient
         left = left[np.abs(step) > SETTLED]
         if not len(left):
             break
-    return vertices, bite
+    return vertices, bite, instant
 
 
 def _crossings(sweep: Sweep, proved: Proved, nodes: _Nodes, thick: float) -> tuple[Floats, Floats]:
@@ -130,7 +135,7 @@ def _crossings(sweep: Sweep, proved: Proved, nodes: _Nodes, thick: float) -> tup
         slope[left] = found.gradient
         step = found.depth / np.minimum(np.einsum("nx,nx->n", found.gradient, along[left]), -1e-3)
         tau[left] = np.clip(tau[left] - step, -thick, thick)
-        left = left[np.abs(step) > SETTLED]
+        left = left[np.abs(step) > NEAR]
         if not len(left):
             break
     slope /= -np.linalg.norm(slope, axis=1, keepdims=True)

@@ -39,7 +39,7 @@ class Spline:
         ):
             both = near + far
             right[row] = ((near + 2.0 * both) * far * first + near * near * second) / both
-        return cls(at, points, np.linalg.solve(matrix, right))
+        return cls(at, points, np.asarray(np.linalg.solve(matrix, right), dtype=np.float64))
 
     def __call__(self, where: Floats | float, derivative: int = 0) -> Floats:
         """The curve, or its first or second derivative, at parameters (...): (..., d)."""

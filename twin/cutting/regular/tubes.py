@@ -39,8 +39,16 @@ def tubes(chart: Chart, made: Skin) -> Surface:
     high[..., 2] = (chart.z[-1] + step + chart.lift)[:, None, None]
     vertices = (np.concatenate([low, ring, high], axis=2) - shift) @ rotation
     # no bite made the lid and the ends
-    bite = np.pad(made.bite, ((0, 0), (0, 1), (1, 1)), constant_values=-1)
-    return Surface(vertices.reshape(-1, 3), _faces(made.rising), bite.reshape(-1), _sheets(made.rising))
+    beside = (0, 0), (0, 1), (1, 1)
+    bite = np.pad(made.bite, beside, constant_values=-1)
+    instant = np.pad(made.instant, beside, constant_values=np.nan)
+    return Surface(
+        vertices.reshape(-1, 3),
+        _faces(made.rising),
+        bite.reshape(-1),
+        instant.reshape(-1),
+        _sheets(made.rising),
+    )
 
 
 def _faces(rising: Bools) -> Ints:
