@@ -4,7 +4,6 @@ import json
 import math
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -29,6 +28,7 @@ from twin.load.forces import CuttingLoad
 from twin.load.rounds import run_under_load
 from twin.outcome import Options, Outcome
 from twin.output.arrays import save_arrays
+from twin.output.background import Background
 from twin.output.folder import require_replaceable, result_folder
 from twin.output.meshes import write_3mf, write_glb, write_stl
 from twin.output.provenance import provenance
@@ -106,47 +106,54 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         if job.physics.cutting_load:
             loaded = run_under_load(job, ready, run, tell=tell.stage, progress=tell.share)
         session = loaded.session if loaded else run(None)
-    tell.stage("cutting")
-    with watch.measure("cutting"):
-        result = cut(
-            blank,
-            session.motions,
-            cell_mm=options.cell_mm,
-            tolerance_um=options.tolerance_um,
-            progress=lambda _stage, share: tell.share(share),
-        )
-    taken = None
-    if options.chips:
-        tell.stage("counting the chips")
-        with watch.measure("chips"):
-            taken = chips(blank, session.motions, progress=lambda _stage, share: tell.share(share))
-    tell.stage("inspecting")
-    with watch.measure("inspection"):
+    with result_folder(out) as folder, Background() as background:
+        background.start(session.recording.save, folder / "recording.npz")
+        tell.stage("cutting")
+        with watch.measure("cutting"):
+            result = cut(
+                blank,
+                session.motions,
+                cell_mm=options.cell_mm,
+                tolerance_um=options.tolerance_um,
+                progress=lambda _stage, share: tell.share(share),
+            )
         mesh = result.remains.vertices, result.remains.faces
-        if job.inspection.datum == "spindle":
-            mesh = ready.tools[0].kinematics.mount.moved(mesh[0]), mesh[1]
-        inspection = inspect(*mesh, job.nominal, own_axis=job.inspection.datum == "fit")
-        deviation = deviation_map(*mesh, inspection)
-    outcome = Outcome(
-        job=job,
-        options=options,
-        ready=ready,
-        session=session,
-        cut=result,
-        inspection=inspection,
-        chips=taken,
-        loaded=loaded,
-        times=watch.stages,
-        advice=advice,
-        missed=misses(
-            job.expect,
-            to_json(inspection),
-            alarms=[alarm.number for alarm in session.alarms],
-            warnings=[warning.number for warning in (*session.warnings, *advice)],
-        ),
-    )
-    tell.stage("writing the report")
-    with result_folder(out) as folder:
+        background.start(write_3mf, folder / "part.3mf", *mesh)
+        background.start(write_stl, folder / "part.stl", *mesh)
+        background.start(write_glb, folder / "part.glb", *mesh)
+        taken = None
+        if options.chips:
+            tell.stage("counting the chips")
+            with watch.measure("chips"):
+                taken = chips(blank, session.motions, progress=lambda _stage, share: tell.share(share))
+            background.start(save_arrays, folder / "chips.npz", taken.columns())
+        tell.stage("inspecting")
+        with watch.measure("inspection"):
+            if job.inspection.datum == "spindle":
+                mesh = ready.tools[0].kinematics.mount.moved(mesh[0]), mesh[1]
+            inspection = inspect(*mesh, job.nominal, own_axis=job.inspection.datum == "fit")
+            deviation = deviation_map(*mesh, inspection)
+        outcome = Outcome(
+            job=job,
+            options=options,
+            ready=ready,
+            session=session,
+            cut=result,
+            inspection=inspection,
+            chips=taken,
+            loaded=loaded,
+            times=watch.stages,
+            advice=advice,
+            missed=misses(
+                job.expect,
+                to_json(inspection),
+                alarms=[alarm.number for alarm in session.alarms],
+                warnings=[warning.number for warning in (*session.warnings, *advice)],
+            ),
+        )
+        tell.stage("writing the report")
+        with watch.measure("files"):
+            background.finish()
         _write(folder, outcome, deviation, watch)
     return outcome
 
@@ -161,31 +168,18 @@ def lowest_z(job: Job, foreseen: DryRun) -> float | None:
 
 
 def _write(folder: Path, outcome: Outcome, deviation: NDArray[np.float64], watch: Stopwatch) -> None:
-    remains, session, job = outcome.cut.remains, outcome.session, outcome.job
-    with watch.measure("files"), ThreadPoolExecutor() as pool:
-        mesh = remains.vertices, remains.faces
-        # compression leaves the interpreter free
-        written = [
-            pool.submit(session.recording.save, folder / "recording.npz"),
-            pool.submit(write_3mf, folder / "part.3mf", *mesh),
-            pool.submit(write_stl, folder / "part.stl", *mesh),
-            pool.submit(write_glb, folder / "part.glb", *mesh),
-        ]
-        for one in written:
-            one.result()
-        if outcome.chips is not None:
-            save_arrays(folder / "chips.npz", outcome.chips.columns())
-        _json(folder / "inspection.json", figures(outcome))
-        _json(
-            folder / "alarms.json",
-            {
-                "alarms": [as_json(a) for a in session.alarms],
-                "warnings": [
-                    *(as_json(a) for a in session.warnings),
-                    *(advice_as_json(a) for a in outcome.advice),
-                ],
-            },
-        )
+    session, job = outcome.session, outcome.job
+    _json(folder / "inspection.json", figures(outcome))
+    _json(
+        folder / "alarms.json",
+        {
+            "alarms": [as_json(a) for a in session.alarms],
+            "warnings": [
+                *(as_json(a) for a in session.warnings),
+                *(advice_as_json(a) for a in outcome.advice),
+            ],
+        },
+    )
     origin = provenance(
         {
             "job": job.path,
