@@ -142,14 +142,15 @@ class Controller:
             )
         time = np.arange(self._tick + 1, self._tick + n + 1) / self._rate
         timeline = self._motion.timeline
+        gears = geared(timeline, time)
         return Chunk(
             first_tick=self._tick,
             setpoint=setpoints(timeline, time),
             block=self._blocks.numbers(self._execution.log, time),
-            sync=engaged(timeline, time),
+            sync=engaged(gears, n),
             tool=marked(timeline.tools, time).astype(np.int16),
             couplings=(follow,) if follow else (),
-            gears=geared(timeline, time),
+            gears=gears,
             watch=watch,
         )
 

@@ -66,7 +66,7 @@ class Chain:
         [mm] and rotations (n, 3, 3), link to world.
         """
         position = np.zeros((len(axes), 3))
-        rotation = np.broadcast_to(np.eye(3), (len(axes), 3, 3))
+        rotation = np.eye(3)[None]  # one for all rows as far as nothing turns
         for link in self.links:
             position = position + rotation @ link.position
             rotation = rotation @ link.rotation
@@ -80,7 +80,7 @@ class Chain:
                 anchor = rotation @ joint.anchor
                 rotation = rotation @ rotation_about(joint.axis, np.radians(value))
                 position = position + anchor - rotation @ joint.anchor
-        return position, rotation
+        return position, np.broadcast_to(rotation, (len(axes), 3, 3))
 
     @property
     def spindle(self) -> Joint:
@@ -223,23 +223,21 @@ def cutter_motion(
 
 
 def _spun(angle: Floats, vector: Floats) -> Floats:
-    """(n, 3) a vector of the tool in its carrier's frame, the spindle turned by `angle` (n,) [rad]."""
-    x, y, z = vector
+    """(n, 3) a vector (3,), or (n, 3), turned about Z by `angle` (n,) [rad]."""
+    x, y, z = vector.T
     cos, sin = np.cos(angle), np.sin(angle)
-    return np.column_stack([x * cos - y * sin, x * sin + y * cos, np.full(len(angle), z)])
+    return np.column_stack([x * cos - y * sin, x * sin + y * cos, np.broadcast_to(z, len(angle))])
 
 
 def part_frame(motion: CutterMotion) -> tuple[Floats, Floats, Floats]:
     """Tool centre [mm], tool axis and direction of tool angle 0 in the turning part frame, each (n, 3)."""
-    back = rotation_about(np.array([0.0, 0.0, 1.0]), -motion.work_angle)
-    mount = motion.mount
-    to_part = mount.rotation.T @ back
-    centre = np.einsum("nij,nj->ni", back, motion.centre) - mount.translation
     zero, axis = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     if motion.lean is not None:
         zero, axis = _leaning(motion.lean, zero), _leaning(motion.lean, axis)
-    to_part = to_part @ motion.basis.T
-    return centre @ mount.rotation, (to_part @ axis[..., None])[..., 0], (to_part @ zero[..., None])[..., 0]
+    back, mount = -motion.work_angle, motion.mount
+    centre = _spun(back, motion.centre) - mount.translation
+    axis, zero = _spun(back, axis @ motion.basis), _spun(back, zero @ motion.basis)
+    return centre @ mount.rotation, axis @ mount.rotation, zero @ mount.rotation
 
 
 def _leaning(lean: Floats, vector: Floats) -> Floats:

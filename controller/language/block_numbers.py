@@ -22,6 +22,8 @@ class BlockNumbers:
         first = max(bisect.bisect_left(log.starts, time[0]) - 1, 0)
         last = bisect.bisect_left(log.starts, time[-1])
         self._take(log, last)
+        if last - first == 1:
+            return np.full(len(time), self._number(log, log.indices[first]), dtype=np.int32)
         k = np.searchsorted(np.array(log.starts[first:last]), time, side="left") - 1
         numbers = [self._number(log, index) for index in log.indices[first:last]]
         # what moves before the first block, by hand, counts for the first line

@@ -20,7 +20,9 @@ Floats = NDArray[np.float64]
 
 def setpoints(timeline: Timeline, time: Floats) -> Floats:
     """(n, axes) setpoints at ascending times (n,); follow-type rotation is left to the machine."""
-    out = np.stack([positions(track, time) for track in timeline.tracks], axis=1)
+    out = np.zeros((len(time), len(timeline.tracks)))
+    for k, track in enumerate(timeline.tracks):
+        out[:, k] = positions(track, time)
     for epoch in timeline.epochs:
         first, last = np.searchsorted(time, (epoch.start, epoch.end), side="right")
         if first < last:
@@ -45,11 +47,11 @@ def read_at(values: Floats, angle: Floats) -> Floats:
     return values[k] + share * (values[(k + 1) % len(values)] - values[k])
 
 
-def engaged(timeline: Timeline, time: Floats) -> NDArray[np.bool_]:
-    """(n,) whether the gear box was engaged up to each time."""
-    found = np.zeros(len(time), dtype=bool)
-    for epoch in timeline.epochs:
-        found |= (time > epoch.start) & (time <= epoch.end)
+def engaged(gears: tuple[Geared, ...], ticks: int) -> NDArray[np.bool_]:
+    """(ticks,) whether a gear box was engaged."""
+    found = np.zeros(ticks, dtype=bool)
+    for gear in gears:
+        found[gear.first : gear.last] = True
     return found
 
 
@@ -114,6 +116,8 @@ def _piece(knot: Straight | Round, tau: Floats) -> Floats:
     """(n,) positions `tau` (n,) after the knot."""
     if len(knot) == 3:
         position, speed, half = knot
+        if not half:
+            return position + tau * speed
         return position + tau * (speed + tau * half)
     wave, angle, speed, half = knot
     u = angle + tau * (speed + tau * half)

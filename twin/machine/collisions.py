@@ -24,18 +24,14 @@ CUTS = ("cutter", "blank")
 """the one pair of bodies that is meant to meet"""
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class _Pair:
-    """Two shapes, and the last place of the slides at which their distance was looked up."""
+    """Two shapes of the model."""
 
     moving: int
     fixed: int
     slides: Floats
     """(axes, 3) travel of the moving shape per travel of an axis [m/mm]"""
-    place: Floats
-    """(3,) [m]"""
-    clearance: float = 0.0
-    """[m] at that place"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,12 +67,11 @@ class Guarded:
     def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:
         """Move along the chunk up to its end, or to the tick of the first collision."""
         feedback = self._machine.advance(chunk, load)
-        change = np.flatnonzero(np.diff(chunk.tool[: feedback.ticks])) + 1
+        tool = chunk.tool[: feedback.ticks]
+        change = np.flatnonzero(tool[1:] != tool[:-1]) + 1
         for begin, end in pairwise([0, *change.tolist(), feedback.ticks]):
-            if begin == end:
-                break
-            shapes = self._shapes.get(int(chunk.tool[begin]), self._first)
-            touch = shapes.first_touch(feedback.actual[begin:end])
+            number = int(tool[begin]) if begin < end else 0
+            touch = self._shapes.get(number, self._first).first_touch(feedback.actual[begin:end])
             if touch is not None:
                 tick, words = touch
                 return _ended(feedback, begin + tick + 1, words)
@@ -95,44 +90,50 @@ class _Shapes:
         self._data = mujoco.MjData(assembly.model)
         self._qpos = [int(assembly.model.joint(j).qposadr[0]) for j in assembly.joints]
         self.pairs = _pairs(assembly)
-        # no shape goes further than the slides together, whichever of them carry it
-        travel = [np.linalg.norm(pair.slides, axis=1) for pair in self.pairs]
-        self._travel = np.max(travel, axis=0) if travel else np.zeros(len(assembly.joints))
-        self._place = np.zeros(len(assembly.joints))
-        self._clearance = 0.0
-        """[m] that every pair has at that place of the axes, at least"""
+        self._slides = np.array([pair.slides for pair in self.pairs]).reshape(-1, len(assembly.joints), 3)
+        """(pairs, axes, 3) [m/mm]"""
+        self._travel = np.linalg.norm(self._slides, axis=2)
+        self._fastest = self._travel.max(axis=0, initial=0.0)
+        self._place = np.zeros_like(self._travel)
+        """(pairs, axes) at which a pair's distance was last looked up"""
+        self._clearance = np.zeros(len(self.pairs))
+        """(pairs,) [m] that it had there"""
+        self._stood = np.zeros(len(assembly.joints))
+        self._free = -1.0
+        """[m] that every shape may go from where the axes stood last"""
 
     def first_touch(self, actual: Floats) -> tuple[int, str] | None:
         """Row of (n, axes) positions in which two of them first touch, and what is to be said of it."""
-        if not self.pairs or (np.abs(actual - self._place) @ self._travel).max() < self._clearance:
+        if not self.pairs or not len(actual):
             return None
-        hits = [
-            (tick, k)
-            for k, pair in enumerate(self.pairs)
-            if (tick := self._touch_of(pair, actual)) is not None
-        ]
-        if hits:
-            tick, k = min(hits)
-            return tick, self._words(self.pairs[k])
-        path = [actual[-1] @ pair.slides - pair.place for pair in self.pairs]
-        left = [
-            pair.clearance - float(np.linalg.norm(way)) for pair, way in zip(self.pairs, path, strict=True)
-        ]
-        self._place, self._clearance = actual[-1].copy(), min(left)
-        return None
+        if (np.abs(actual - self._stood).max(axis=0) @ self._fastest) < self._free:
+            return None
+        # no shape goes further than to the middle of all positions, and from there by half their extent
+        low, high = actual.min(axis=0), actual.max(axis=0)
+        middle = ((low + high) / 2 - self._place)[:, None, :] @ self._slides
+        furthest = np.sqrt((middle**2).sum(axis=(1, 2))) + self._travel @ ((high - low) / 2)
+        near = np.flatnonzero(furthest >= self._clearance)
+        hits = [(tick, k) for k in near.tolist() if (tick := self._touch_of(k, actual)) is not None]
+        if not hits:
+            self._stood = actual[-1].copy()
+            way = (self._stood - self._place)[:, None, :] @ self._slides
+            self._free = float((self._clearance - np.sqrt((way**2).sum(axis=(1, 2)))).min())
+            return None
+        tick, k = min(hits)
+        return tick, self._words(self.pairs[k])
 
-    def _touch_of(self, pair: _Pair, actual: Floats) -> int | None:
-        """Row of (n, axes) positions in which the pair first touches."""
-        path = actual @ pair.slides
-        first = 0
-        while first < len(path):
-            moved = np.linalg.norm(path[first:] - pair.place, axis=1) >= pair.clearance
+    def _touch_of(self, k: int, actual: Floats) -> int | None:
+        """Row of (n, axes) positions in which a pair first touches."""
+        pair, first = self.pairs[k], 0
+        while first < len(actual):
+            way = (actual[first:] - self._place[k]) @ pair.slides
+            moved = np.einsum("ij,ij->i", way, way) >= self._clearance[k] ** 2
             if not moved.any():
                 return None
             first += int(np.argmax(moved))
-            pair.place = path[first]
-            pair.clearance = self.distance(pair, actual[first])
-            if pair.clearance <= 0.0:
+            self._place[k] = actual[first]
+            self._clearance[k] = max(self.distance(pair, actual[first]), 0.0)
+            if not self._clearance[k]:
                 return first
             first += 1
         return None
@@ -199,7 +200,7 @@ def _pairs(assembly: Assembly) -> list[_Pair]:
                 or names == CUTS
             ):
                 continue
-            pairs.append(_Pair(moving=moving, fixed=fixed, slides=travel[moving], place=np.zeros(3)))
+            pairs.append(_Pair(moving=moving, fixed=fixed, slides=travel[moving]))
     return pairs
 
 

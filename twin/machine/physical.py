@@ -83,7 +83,9 @@ class MujocoMachine:
                 )
             )
         self._units = np.array([d.unit for d in drives])
+        self._played = [k for k, drive in enumerate(drives) if drive.backlash]
         self._qpos = [int(model.joint(name).qposadr[0]) for name in assembly.joints]
+        self._warnings = self.data.warning.number
         self._watcher = Watcher()
         self._stylus = None
         if assembly.stylus is not None:
@@ -107,7 +109,7 @@ class MujocoMachine:
         pressing = None if load is None or limit == 0 else Pressing(load, self._tick, limit, len(self._axes))
         run = self._run(chunk, limit, watch, pressing)
         ticks = len(run.motor)
-        if not np.isfinite(run.motor).all() or self.data.warning.number.any():
+        if not np.isfinite(run.motor).all() or self._warnings.any():
             raise MachineError(
                 f"the machine's motion broke down between ticks {self._tick} and {self._tick + ticks}",
                 remedy="look for setpoints or loads beyond what the drives can do",
@@ -206,11 +208,10 @@ class MujocoMachine:
 
     def _load_side(self, motor: Floats, forces: Floats | None) -> Floats:
         """(ticks, axes) positions of the load behind the motors' [m | rad]."""
-        columns = [
-            axis.backlash.follow(motor[:, k], None if forces is None else forces[:, k])
-            for k, axis in enumerate(self._axes)
-        ]
-        return np.column_stack(columns)
+        load = motor.copy()
+        for k in self._played:
+            load[:, k] = self._axes[k].backlash.follow(motor[:, k], None if forces is None else forces[:, k])
+        return load
 
     def _holds(self, watch: Watch) -> bool:
         """Whether the watched axes (`latch_axes`, none named = all) fulfil the condition after this tick.
@@ -231,6 +232,8 @@ class MujocoMachine:
         alarms: list[MachineAlarm] = []
         if self._stylus is not None and self._stylus.alarm is not None:
             alarms.append(self._stylus.alarm)
+        if not self._tripped:
+            return tuple(alarms)
         for k, (name, axis) in enumerate(zip(self.assembly.joints, self._axes, strict=True)):
             loop, drive = axis.loop, axis.drive
             if not isinstance(loop, Servo) or loop not in self._tripped:

@@ -106,9 +106,10 @@ def test_random_walks_stop_where_looking_at_every_tick_would() -> None:
         shapes = guarded._first
         every = [min(shapes.distance(pair, row) for pair in shapes.pairs) for row in setpoint]
         touching = np.flatnonzero(np.array(every) <= 0.0)
-        ticks, alarms = follow(assembly, setpoint)
-        assert bool(alarms) == bool(len(touching))
-        assert ticks == (touching[0] + 1 if len(touching) else len(setpoint))
+        for size in (5, 4096):
+            ticks, alarms = follow(assembly, setpoint, size)
+            assert bool(alarms) == bool(len(touching))
+            assert ticks == (touching[0] + 1 if len(touching) else len(setpoint))
 
 
 @pytest.mark.parametrize("size", [1, 3, 4096])
