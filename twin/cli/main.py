@@ -23,8 +23,8 @@ from twin.errors import ExitCode, HobtwinError
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command. Returns the exit code of the contract: 0 fine, 1 finding, 2 usage, 3 our fault."""
     options = _parser().parse_args(arguments)
-    # no window is opened: MuJoCo need not look for what would open one
-    os.environ.setdefault("MUJOCO_GL", "disable")
+    for name, value in QUIETER.items():
+        os.environ.setdefault(name, value)
     if threading.current_thread() is threading.main_thread():
         # a run that is told to stop cleans up after itself, as with Ctrl-C
         signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -59,6 +59,11 @@ def _said(error: Exception) -> str:
     return f"hobtwin: internal fault: {what} (run again with --debug for the trace)"
 
 
+QUIETER = {
+    "MUJOCO_GL": "disable",  # no window is opened: MuJoCo need not look for what would open one
+    "OPENBLAS_NUM_THREADS": "1",  # matrices are small, and we divide the work among threads ourselves
+}
+"""What libraries are told before they are loaded, if nobody told them otherwise."""
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells expect it."""
 UNREADABLE = frozenset({"HT9000", "HT9001"})

@@ -103,14 +103,10 @@ def find_steady(
     columns = np.column_stack([motion.work_angle, motion.centre, lean])
     # what of it moves the stock by how much
     weight = np.array([stock.radius, 1.0, 1.0, 1.0, *[sway(field.cutter, motion, stock)[1]] * 2])
-    loose = _on_screw(turns, columns, weight, deep, lambda _: limit)
-    # the whole of a steady stretch keeps to the screw about as well as its middle, but for its ends
-    tight = loose and _on_screw(
-        turns, columns, weight, loose[0], lambda off: min(limit, TRUE * float(np.median(off)) + SETTLED)
-    )
-    if not loose or not tight:
+    found = _tried(turns, columns, weight, deep, limit)
+    if found is None:
         return None
-    run, shape, off, begin = tight if _turns(turns, tight) > MOST * _turns(turns, loose) else loose
+    run, shape, off, begin = found
     numbers = _passes_in(field, motion, run)
     rise = float(shape[-1, 3])
     if numbers is None or not rise or (np.diff(turns[run]) <= 0).any():
@@ -143,27 +139,44 @@ _Screw = tuple[slice, Floats, Floats, float]
 """Samples, shape, how far off those are (n,), and the turn from which the shape counts."""
 
 
-def _turns(turns: Floats, found: _Screw) -> float:
-    return float(np.ptp(turns[found[0]]))
+def _tried(turns: Floats, columns: Floats, weight: Floats, deep: slice, limit: float) -> _Screw | None:
+    """The longest stretch on a screw, without ends that stand off it much more than its middle does."""
+    # some samples of each turn tell about where it is
+    every = max(int(len(turns[deep]) / (SAMPLES * max(np.ptp(turns[deep]), 1.0))), 1)
+    some = slice(deep.start, deep.stop, every)
+    rough = _on_screw(turns[some], columns[some], weight, slice(0, len(turns[some])), lambda _: limit)
+    if rough is None:
+        return None
+    first, stop = rough[0].start * every, (rough[0].stop - 1) * every + 1
+    about = slice(deep.start + first, deep.start + stop)
+    # the whole of a steady stretch keeps to the screw about as well as its middle, but for its ends
+    tight = _on_screw(
+        turns, columns, weight, about, lambda off: min(limit, TRUE * float(np.median(off)) + SETTLED)
+    )
+    if tight and np.ptp(turns[tight[0]]) > MOST * np.ptp(turns[about]):
+        return tight
+    return tight and _on_screw(turns, columns, weight, about, lambda _: limit)
 
 
 def _on_screw(
     turns: Floats, columns: Floats, weight: Floats, within: slice, limit: Callable[[Floats], float]
 ) -> _Screw | None:
     """The longest stretch of samples within a limit, told by how far off all are, and the screw it is on."""
-    run = within
+    turns, columns, first = turns[within], columns[within], within.start
+    run = slice(0, len(turns))
+    base = _base(turns, 0.0)
     for _ in range(ROUNDS):
         if run.stop - run.start < 2 or np.ptp(turns[run]) < LEAST:
             return None
         begin = float(turns[run].mean())
-        base = _base(turns, begin)
+        base[:, -1] = turns - begin
         shape = _fit(base[run], columns[run])
-        off = np.linalg.norm((columns - base @ shape) * weight, axis=1)
-        good = off < limit(off[run])
-        good[: within.start] = good[within.stop :] = False
-        before, run = run, _longest(good)
+        away = columns - base @ shape
+        away *= weight
+        off = np.sqrt(np.einsum("nc,nc->n", away, away))
+        before, run = run, _longest(off < limit(off[run]))
         if run == before:
-            return run, shape, off[run], begin
+            return slice(first + run.start, first + run.stop), shape, off[run], begin
     return None
 
 
