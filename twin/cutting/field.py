@@ -198,15 +198,18 @@ class DepthField:
         bent[~proved | partial] = np.inf
         return change, bent
 
-    def near(self, point: Floats, radius: float) -> Ints:
-        """Passes whose tool may come within `radius` of a point (3,) of the part [mm]."""
+    def near(self, point: Floats, radius: float, among: Ints | None = None) -> Ints:
+        """Passes, of all or `among` some (m,), whose tool may come within `radius` [mm] of a point (3,)."""
         local = self._mount.rotation @ point + self._mount.translation
-        state = self._rake.seen
+        rows: slice | Ints = slice(None) if among is None else among
+        state = self._rake.seen[:, rows]
         x = local[0] * state[0] - local[1] * state[1] - state[2]
         y = local[0] * state[1] + local[1] * state[0] - state[3]
         z = local[2] - state[4]
         a, b, _ = self._basis @ np.stack([x, y, z])
-        return np.flatnonzero(np.hypot(a, b) < self.cutter.radius + radius + self.passes.travel + self._sway)
+        reach = self.cutter.radius + radius + self.passes.travel[rows] + self._sway
+        found = np.flatnonzero(np.hypot(a, b) < reach)
+        return found if among is None else among[found]
 
     def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:
         """Rows and bites of the passes `index` (m,) that may cut within `radius` (m,) of `points` (m, 3)."""

@@ -62,8 +62,8 @@ class Field(Protocol):
         """Lower bounds (c, m) of bites' depths in the convex hulls of `corners` (m, c, 3)."""
         ...
 
-    def near(self, point: Floats, radius: float) -> Ints:
-        """Passes that may cut within `radius` of a point (3,)."""
+    def near(self, point: Floats, radius: float, among: Ints | None = None) -> Ints:
+        """Passes, of all or `among` some (m,), that may cut within `radius` of a point (3,)."""
         ...
 
     def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:

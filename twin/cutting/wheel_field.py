@@ -125,9 +125,10 @@ class WheelField:
         """
         return radius + ROUNDING, meeting.slack + self._bent(bite, radius)
 
-    def near(self, point: Floats, radius: float) -> Ints:
-        """Windows in which the tool may come within `radius` of a point (3,) of the part [mm]."""
-        index = np.arange(self.passes.count)
+    def near(self, point: Floats, radius: float, among: Ints | None = None) -> Ints:
+        """Windows, of all or `among` some (m,), in which the tool may come within `radius` of a point (3,) of
+        the part [mm]."""
+        index = np.arange(self.passes.count) if among is None else among
         return index[self._miss(np.broadcast_to(point, (len(index), 3)), index) < radius]
 
     def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:

@@ -104,11 +104,13 @@ def strips_of(sweep: Sweep, chart: Chart, screwed: Screwed, proved: Templates, t
     needed = np.array(proved.passes) + later[:, None]
     made = ((needed >= steady.made[0]) & (needed <= steady.made[1])).all(axis=1)
     middle, radius = columns(blocks(chart, patch, thick))
-    foreign = []
-    for point, reach in zip(middle, radius + 2.0 * proved.room, strict=True):
-        near = [f.near(point, float(reach)) for f in sweep.fields]
-        near[-1] = near[-1][(near[-1] < steady.near[0]) | (near[-1] > steady.near[1])]
-        foreign.append(tuple(near))
+    others: list[Ints | None] = [None] * len(sweep.fields)
+    passes = np.arange(sweep.fields[-1].passes.count)
+    others[-1] = passes[(passes < steady.near[0]) | (passes > steady.near[1])]
+    foreign = [
+        tuple(f.near(point, float(reach), among) for f, among in zip(sweep.fields, others, strict=True))
+        for point, reach in zip(middle, radius + 2.0 * proved.room, strict=True)
+    ]
     return Strips(patch=patch, image=np.asarray(made), foreign=tuple(foreign))
 
 
