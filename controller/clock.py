@@ -86,6 +86,8 @@ class Chunk:
     """(n,) whether the electronic gear box is engaged"""
     tool: NDArray[np.int16]
     """(n,) number of the tool in use, 0 = the one that is mounted without a T word"""
+    rapid: NDArray[np.bool_] | None = None
+    """(n,) whether the slides move at rapid; None = nowhere"""
     couplings: tuple[Follow, ...] = ()
     gears: tuple[Geared, ...] = ()
     watch: Watch | None = None

@@ -149,6 +149,7 @@ class Controller:
             block=self._blocks.numbers(self._execution.log, time),
             sync=engaged(gears, n),
             tool=marked(timeline.tools, time).astype(np.int16),
+            rapid=marked(timeline.rapids, time).astype(bool),
             couplings=(follow,) if follow else (),
             gears=gears,
             watch=watch,

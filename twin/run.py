@@ -16,6 +16,7 @@ from controller.language.source import load_program
 from controller.tables.alarms import as_json
 from twin.advice.advice import advice_as_json
 from twin.advice.dry import advised_run
+from twin.clashes.clashes import judged
 from twin.cutting.chips import chips
 from twin.cutting.cut import cut
 from twin.cutting.plan import plan_grid
@@ -105,7 +106,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     with watch.measure("machine"):
         if job.physics.cutting_load:
             loaded = run_under_load(job, ready, run, tell=tell.stage, progress=tell.share)
-        session = loaded.session if loaded else run(None)
+        session = judged(blank, loaded.session if loaded else run(None))
     with result_folder(out) as folder, Background() as background:
         background.start(session.recording.save, folder / "recording.npz")
         tell.stage("cutting")

@@ -45,6 +45,8 @@ class Session:
     warnings: tuple[Alarm, ...]
     skipped_s: float
     """idle time that was passed over"""
+    rapid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    """(n,) whether the slides moved at rapid, of every sample of the recording"""
     common: Mapping[int, float | None] = field(default_factory=dict)
     """common variables of the control at the end, #100 to #199 and #500 to #999"""
 
@@ -60,6 +62,7 @@ class _Tape:
     sync: NDArray[np.bool_]
     sync_error: Floats
     tool: NDArray[np.int16]
+    rapid: NDArray[np.bool_]
 
     @staticmethod
     def of(chunk: Chunk, feedback: Feedback, tick_s: float) -> "_Tape":
@@ -73,6 +76,7 @@ class _Tape:
             sync=chunk.sync[:n],
             sync_error=sync_error(chunk, feedback),
             tool=chunk.tool[:n],
+            rapid=np.zeros(n, dtype=bool) if chunk.rapid is None else chunk.rapid[:n],
         )
 
     @staticmethod
@@ -87,6 +91,7 @@ class _Tape:
             sync=np.zeros(0, dtype=bool),
             sync_error=empty[:, 0],
             tool=np.zeros(0, dtype=np.int16),
+            rapid=np.zeros(0, dtype=bool),
         )
         names = [f.name for f in fields(_Tape)]
         return _Tape(**{name: np.concatenate([getattr(t, name) for t in (none, *tapes)]) for name in names})
@@ -155,13 +160,15 @@ def record(
                 remedy="check the feed; run a part of the program",
             )
         progress(chunk.first_tick * controller.tick_s)
-    recording, motions = _recording(controller, ready, _Tape.joined(tapes, len(controller.axes)), load)
+    tape = _Tape.joined(tapes, len(controller.axes))
+    recording, motions = _recording(controller, ready, tape, load)
     return Session(
         recording=recording,
         motions=motions,
         alarms=controller.alarms,
         warnings=controller.warnings,
         skipped_s=skipped * controller.tick_s,
+        rapid=tape.rapid,
         common=controller.common_variables,
     )
 

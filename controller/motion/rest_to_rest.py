@@ -57,7 +57,10 @@ class ShortLane:
             top = feed.value
         if motion.references.reached:
             motion.references.leave([k for k, _, _ in ways])
+        begin = motion.time
         self._go(ways, length, min(top, math.sqrt(rate * length)), rate)
+        if self._sampled and not feed:
+            motion.timeline.go_rapid(begin, motion.time)
         shown, extents = motion.registers.absolute, motion.program_extents
         for k, way, _ in ways:
             shown[k] += way

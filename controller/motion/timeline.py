@@ -49,6 +49,13 @@ class Marks:
             self.times.append(time)
             self.values.append(value)
 
+    def forget(self, before: float) -> None:
+        """Free what no time from `before` on needs."""
+        k = bisect.bisect_left(self.times, before) - 1
+        if k > 0:
+            del self.times[:k]
+            del self.values[:k]
+
 
 @dataclass(slots=True)
 class Timeline:
@@ -58,6 +65,8 @@ class Timeline:
     tracks: list[Track] = field(init=False)
     epochs: list[Epoch] = field(default_factory=list)
     tools: Marks = field(default_factory=Marks)
+    rapids: Marks = field(default_factory=Marks)
+    """1 while a path is travelled at rapid"""
     corrections: list[TableInForce] = field(default_factory=list)
     """tables against the work angle, added where the timeline is sampled: no display counts them"""
 
@@ -101,14 +110,17 @@ class Timeline:
         tables = (correction.still_until(time) for correction in self.corrections)
         return min(*(track.still_until(time) for track in self.tracks), *tables)
 
+    def go_rapid(self, begin: float, end: float) -> None:
+        """A path is travelled at rapid between two times."""
+        self.rapids.add(begin, 1)
+        self.rapids.add(end, 0)
+
     def forget(self, before: float) -> None:
         """Free what no time from `before` on needs."""
         for track in self.tracks:
             track.forget(before)
-        k = bisect.bisect_left(self.tools.times, before) - 1
-        if k > 0:
-            del self.tools.times[:k]
-            del self.tools.values[:k]
+        self.tools.forget(before)
+        self.rapids.forget(before)
         if self.epochs and self.epochs[0].end <= before:
             self.epochs = [epoch for epoch in self.epochs if epoch.end > before]
         self.corrections = [one for one in self.corrections if one.end + RAMP_S > before]

@@ -80,6 +80,8 @@ class Travelling(Settling):
             if isinstance(answer, Touch):
                 on_way.touch, self.time, standing = answer, answer.time, False
                 phases = clip(phases, answer.time - begin)
+        if path.rapid:
+            self.timeline.go_rapid(begin, self.time)
         on_way.position, on_way.speed = phases[-1].end, max(phases[-1].end_speed, 0.0)
         if standing:
             if path.end - on_way.position < NOTHING:

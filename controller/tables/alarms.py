@@ -47,6 +47,9 @@ _CLASS_OF = {
     "HT9013": AlarmClass.SERVO,
     "HT9030": AlarmClass.SERVO,
     "HT9031": AlarmClass.SERVO,
+    "HT9032": AlarmClass.SERVO,
+    "HT9033": AlarmClass.SERVO,
+    "HT9034": AlarmClass.SERVO,
     "HT9040": AlarmClass.SERVO,
     "PS": AlarmClass.PROGRAM,
     "HT": AlarmClass.PROGRAM,
@@ -148,6 +151,9 @@ HT9016 | TOO MANY PASSES IN A CYCLE | a larger depth of cut
 HT9020 | THREAD TOO FAST FOR THE AXES | a lower spindle speed, or a smaller lead
 HT9030 | COLLISION | a path on which nothing but the cutter touches the work
 HT9031 | TOUCH PROBE CRASH | a path on which the stylus meets a reference band alone, and stops in time
+HT9032 | RAPID INTO THE STOCK | G00 to clear of the metal that stands, then a feed
+HT9033 | CUTTING WITH THE TOOL AT REST | S before the block
+HT9034 | HOBBING WITH THE WORK AT REST | T, L, P and Q with which the work turns
 HT9040 | UNSTABLE CUT | less feed or depth, another speed, or stiffer mounts
 """
 

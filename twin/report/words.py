@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from twin.clashes.runs import CLASHES
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
 from twin.inspection.result import GearResult, Inspection, PolygonResult, Verdict
 from twin.report.data import Message, ReportData, Severity
@@ -51,7 +52,10 @@ def headline(data: ReportData) -> Headline:
     else:
         sentence = f"The part is what was wanted: {came}{_class_note(inspection)}."
         tone, label = Tone.GOOD, "In tolerance"
-    if stop:
+    if alarms and alarms[0].number in CLASHES:
+        sentence += " But the tool took metal as it must not."
+        tone, label = Tone.BAD, "Tool ran into the stock"
+    elif stop:
         sentence += " But the program did not run to its end."
         tone, label = Tone.BAD, "Stopped by an alarm"
     return Headline(tone=tone, label=label, sentence=sentence, findings=findings)
@@ -127,6 +131,8 @@ def _nothing(data: ReportData, stop: tuple[str, ...]) -> Headline:
 def _stop(alarm: Message) -> str:
     place = f" at {alarm.short_place}" if alarm.short_place else ""
     found_there = f": {alarm.found}" if alarm.found else ""
+    if alarm.number in CLASHES:
+        return f"{alarm.number} {alarm.text}{place}{found_there}."
     return f"The program stopped{place} with {alarm.number} {alarm.text}{found_there}."
 
 

@@ -80,6 +80,15 @@ def test_no_good_part_out_of_a_stopped_program(sample):
     assert head.findings[0] == "The program stopped at p.nc:3:1 with PS0010 IMPROPER G-CODE."
 
 
+def test_no_good_part_out_of_a_rapid_into_the_stock(sample):
+    clash = replace(ALARM, number="HT9032", text="RAPID INTO THE STOCK", found="1.82 mm deep, at 1.450 s")
+    head = headline(ReportData(title="t", inspection=sample.gear_inspection(), messages=(clash,)))
+    assert head.tone is Tone.BAD
+    assert head.label == "Tool ran into the stock"
+    assert "stopped" not in head.findings[0]
+    assert head.findings[0].startswith("HT9032 RAPID INTO THE STOCK at p.nc:3:1")
+
+
 @pytest.mark.parametrize(
     ("inspection", "messages", "label", "sentence"),
     [
