@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 CHECKED = 1000
-"""Points of the mesh that every run holds against all passes: half vertices, half middles of facets"""
+"""Points of the mesh that every run holds against all passes: half vertices, half amid facets"""
 VERTEX_ERROR = 1e-4
 """[mm] off the envelope from which a vertex is worth a note"""
 FACET_ERROR = 1e-2
@@ -50,14 +50,15 @@ class Errors:
 
 
 def check(sweep: Sweep, surface: Surface, blank: Blank) -> tuple[Errors, Errors]:
-    """Errors of random vertices, and of random middles of facets, against all passes, unculled.
+    """Errors of random vertices, and of random points of facets, against all passes, unculled.
 
     What lies on the closing faces outside the blank is left out. Raises PartError for points that no pass can
     have made.
     """
     rng = np.random.default_rng(0)
-    middles = surface.vertices[surface.faces].mean(axis=1)
-    return _off(sweep, surface.vertices, blank, rng), _off(sweep, middles, blank, rng)
+    share = rng.dirichlet(np.ones(3), len(surface.faces))
+    points = np.einsum("fc,fcx->fx", share, surface.vertices[surface.faces])
+    return _off(sweep, surface.vertices, blank, rng), _off(sweep, points, blank, rng)
 
 
 def _off(sweep: Sweep, points: Floats, blank: Blank, rng: np.random.Generator) -> Errors:
@@ -69,8 +70,8 @@ def _off(sweep: Sweep, points: Floats, blank: Blank, rng: np.random.Generator) -
     return Errors(chosen, np.abs(depth))
 
 
-def coarse(vertices: Errors, facets: Errors) -> list[str]:
-    """What the check has to say."""
+def coarse(vertices: Errors, facets: Errors, limit: float = FACET_ERROR) -> list[str]:
+    """What the check has to say; facets that stand off by more than `limit` [mm] are worth a note."""
     notes: list[str] = []
     off = vertices.beyond(VERTEX_ERROR)
     if len(off.distance):
@@ -78,10 +79,10 @@ def coarse(vertices: Errors, facets: Errors) -> list[str]:
             f"{len(off.distance)} of {len(vertices.distance)} checked points of the cut stand up to "
             f"{off.largest_um:.2g} µm off it, {region(off.points)}; a smaller --cell-mm holds them better"
         )
-    off = facets.beyond(FACET_ERROR)
+    off = facets.beyond(limit)
     if len(off.distance):
         notes.append(
-            f"between its vertices the mesh stands up to {off.largest_um:.0f} µm off the cut "
+            f"between its vertices the mesh stands up to {off.largest_um:.3g} µm off the cut "
             f"({len(off.distance)} of {len(facets.distance)} checked facets), {region(off.points)}; a "
             "smaller --cell-mm follows it better"
         )

@@ -12,11 +12,13 @@ from twin.cutting.check import Errors, check, coarse, missed
 from twin.cutting.crossings import find_crossings, leaf_cells, node_depths
 from twin.cutting.dual import Cells, Surface, contour
 from twin.cutting.engagement import StockCylinder, axes_apart, scraped
+from twin.cutting.facets import divided
 from twin.cutting.fields import tool_field
 from twin.cutting.grid import Grid
+from twin.cutting.landing import Ground
 from twin.cutting.moments import face_moments, moments
 from twin.cutting.motion import CutterMotion
-from twin.cutting.plan import CORE, plan_grid
+from twin.cutting.plan import CORE, facet_limit, plan_grid
 from twin.cutting.refine import refine
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.regular import Regular, regular_cut
@@ -55,7 +57,7 @@ class CutResult:
     largest_error_um: float
     """largest distance of those from the envelope of all passes"""
     facet_error_um: float
-    """the same for as many middles of facets: what the cells' size costs"""
+    """the same for as many random points of facets: what their size costs"""
     notes: tuple[str, ...]
 
 
@@ -70,7 +72,7 @@ def cut(
     """Cut the blank by everything the tools sweep.
 
     Facets keep to `tolerance_um` on the flanks of a regular gear, three times that in its roots, twice that
-    on any other part as a rule; `cell_mm`, the cell across the surface, takes its place. Raises PartError
+    on any other part; `cell_mm`, the cell across the surface, takes its place. Raises PartError
     where nothing is left or the motion is not modelled, InputError for a cell or a tolerance that cannot be.
     """
     progress("passes", 0.0)
@@ -96,7 +98,8 @@ def cut(
         errors, facets = check(sweep, regular.surface, blank)
         notes += [*_coarser(regular, tolerance_um), *coarse(errors, facets)]
     except IrregularError as why:
-        made = _general(blank, sweep, grid, closest, progress)
+        limit = facet_limit(blank, cutters, cell_mm=cell_mm, tolerance_um=tolerance_um)
+        made = _general(blank, sweep, grid, limit=limit, closest=closest, progress=progress)
         method, cells, pairs = f"general (cylindrical grid), for {why}", grid.cell_mm, made.pairs
         surface, errors, facets = made.surface, made.errors, made.facets
         notes += made.notes
@@ -149,8 +152,10 @@ class _Made:
     notes: list[str]
 
 
-def _general(blank: Blank, sweep: Sweep, grid: Grid, closest: float, progress: Progress) -> _Made:
-    """On a cylindrical grid, whatever the tools do."""
+def _general(
+    blank: Blank, sweep: Sweep, grid: Grid, *, limit: float, closest: float, progress: Progress
+) -> _Made:
+    """On a cylindrical grid, whatever the tools do, with facets within `limit` of the cut [mm]."""
     leaves = refine(sweep, grid)
     progress("crossings", 0.5)
     depth = node_depths(sweep, grid, leaves)
@@ -165,10 +170,12 @@ def _general(blank: Blank, sweep: Sweep, grid: Grid, closest: float, progress: P
     crossings = find_crossings(sweep, grid, leaves, depth)
     cell_low, case, leaf = leaf_cells(grid, leaves, depth)
     progress("meshing", 0.7)
-    surface = contour(sweep, grid, Cells(cell_low, case, leaf), crossings, leaves)
+    ground = Ground(sweep, grid, leaves)
+    surface, leaf = contour(ground, Cells(cell_low, case, leaf), crossings)
+    surface = divided(ground, surface, leaf, blank, limit)
     progress("checking", 0.8)
     errors, facets = check(sweep, surface, blank)
-    notes += coarse(errors, facets) + missed(sweep, grid, leaves, surface, depth=depth, blank=blank)
+    notes += coarse(errors, facets, limit) + missed(sweep, grid, leaves, surface, depth=depth, blank=blank)
     return _Made(surface, errors, facets, leaves.pairs, notes)
 
 

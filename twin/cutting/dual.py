@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from twin.cutting.crossings import Crossings, edge_key
 from twin.cutting.grid import Grid
 from twin.cutting.landing import Around, Ground, landed
-from twin.cutting.refine import Leaves
+from twin.cutting.planes import FEATURE, meet, onto_edges, totals
 from twin.cutting.sheets import NO_SHEETS, Sheets
 from twin.cutting.sweep import Sweep
 from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS, edge_at
@@ -21,9 +21,6 @@ from twin.cutting.topology import CORNERS, EDGES, SHEET, SHEETS, edge_at
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-FEATURE = 3e-5
-"""Share of an eigenvalue of the normals' scatter above which planes are taken to meet in that direction: more
-than about 0.6° apart, as feed marks and generating flats are."""
 MARGIN = 0.05
 """Share of a cell by which a vertex may stand outside its own."""
 
@@ -56,8 +53,9 @@ class Cells:
     """(n,) row of its leaf"""
 
 
-def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings, leaves: Leaves) -> Surface:
-    """Mesh of the cut surface."""
+def contour(ground: Ground, cells: Cells, crossings: Crossings) -> tuple[Surface, Ints]:
+    """Mesh of the cut surface, and the leaf (n,) of each of its vertices."""
+    sweep, grid = ground.sweep, ground.grid
     first = np.concatenate([[0], np.cumsum(SHEETS[cells.case])])
     sheets = _Sheets.of(grid, cells, crossings, first)
     vertices, normals, spread = _fit(grid, cells, crossings, sheets)
@@ -66,12 +64,12 @@ def contour(sweep: Sweep, grid: Grid, cells: Cells, crossings: Crossings, leaves
     closed[sheets.owner[sheets.bite < 0]] = True
     longest = 0.5 * min(grid.cell_mm)
     vertices = _onto_edges(sweep, vertices, (spread > FEATURE) & ~closed, sheets, longest)
-    ground = Ground(sweep, grid, leaves)
-    around = Around(sheets.owner, sheets.row, cells.leaf[sheets.cell])
+    leaf = cells.leaf[sheets.cell]
+    around = Around(sheets.owner, sheets.row, leaf)
     bite = np.full(len(vertices), -1, dtype=np.int64)
     vertices, bite[~closed] = landed(ground, vertices, np.flatnonzero(~closed), around, crossings)
     quads = _quads(grid, cells, crossings, first)
-    return Surface(vertices, _triangles(vertices, normals, quads), bite)
+    return Surface(vertices, _triangles(vertices, normals, quads), bite), leaf
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,12 +104,12 @@ def _fit(grid: Grid, cells: Cells, crossings: Crossings, sheets: _Sheets) -> tup
     the planes differ (n,), in terms of FEATURE."""
     owner, n = sheets.owner, len(sheets.cell)
     p, q = crossings.point[sheets.row], crossings.normal[sheets.row]
-    count = _totals(owner, np.ones(len(owner)), n)
-    middle = np.stack([_totals(owner, p[:, x], n) for x in range(3)], axis=1) / count[:, None]
-    normal = np.stack([_totals(owner, q[:, x], n) for x in range(3)], axis=1)
+    count = totals(owner, np.ones(len(owner)), n)
+    middle = np.stack([totals(owner, p[:, x], n) for x in range(3)], axis=1) / count[:, None]
+    normal = np.stack([totals(owner, q[:, x], n) for x in range(3)], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     height = np.einsum("nx,nx->n", q, p - middle[owner])
-    shift, values = _meet(owner, q, height, n)
+    shift, values = meet(owner, q, height, n)
     spread = values[:, 1] / np.maximum(values[:, 2], 1e-12)
     vertices = middle + shift
     # a vertex that leaves its cell may fold the mesh: fall back to the middle of the crossings
@@ -119,27 +117,6 @@ def _fit(grid: Grid, cells: Cells, crossings: Crossings, sheets: _Sheets) -> tup
     vertices[out] = middle[out]
     spread[out] = 0.0
     return vertices, normal, spread
-
-
-def _totals(owner: Ints, values: Floats, n: int) -> Floats:
-    """(n,) sums of `values` over what each owner has."""
-    return np.asarray(np.bincount(owner, values, minlength=n), dtype=np.float64)
-
-
-def _meet(owner: Ints, normal: Floats, height: Floats, n: int) -> tuple[Floats, Floats]:
-    """Least shifts (n, 3) to where planes meet best, and eigenvalues (n, 3) of their normals' scatter.
-
-    Owner i's planes are `normal · shift = height`. Directions whose eigenvalue is below FEATURE of the
-    largest are left alone.
-    """
-    scatter = np.empty((n, 3, 3))
-    for x in range(3):
-        for y in range(x, 3):
-            scatter[:, x, y] = scatter[:, y, x] = _totals(owner, normal[:, x] * normal[:, y], n)
-    pull = np.stack([_totals(owner, normal[:, x] * height, n) for x in range(3)], axis=1)
-    values, vectors = np.linalg.eigh(scatter)
-    inverse = np.where(values > FEATURE * values[:, 2:], 1.0 / np.maximum(values, 1e-12), 0.0)
-    return np.einsum("nxe,ne,nye,ny->nx", vectors, inverse, vectors, pull), values
 
 
 def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.bool_]:
@@ -169,18 +146,13 @@ def _free(grid: Grid, occupied: Ints, low: Ints, points: Floats) -> NDArray[np.b
 def _onto_edges(
     sweep: Sweep, vertices: Floats, edgy: NDArray[np.bool_], sheets: _Sheets, longest: float
 ) -> Floats:
-    """Bring some vertices to where the bites around them meet, by two Newton steps."""
+    """Bring some vertices to where the bites around them meet."""
     vertices = vertices.copy()
     number = np.cumsum(edgy) - 1
     mine = edgy[sheets.owner] & (sheets.bite >= 0)
     bites = sheets.bite.max() + 1
     owner, bite = np.divmod(np.unique(number[sheets.owner[mine]] * bites + sheets.bite[mine]), bites)
-    rows = np.flatnonzero(edgy)
-    for _ in range(2):
-        meeting = sweep.evaluate(vertices[rows[owner]], bite, gradient=True)
-        step, _ = _meet(owner, meeting.gradient, -meeting.depth, len(rows))
-        step[np.linalg.norm(step, axis=1) > longest] = 0.0
-        vertices[rows] += step
+    vertices[edgy] = onto_edges(sweep, vertices[edgy], owner, bite, longest)
     return vertices
 
 

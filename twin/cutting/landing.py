@@ -74,7 +74,7 @@ def landed(
 ) -> tuple[Floats, Ints]:
     """Bring the vertices `rows` (m,) of some sheets (n, 3) onto the surface; their deepest bites (m,)."""
     points = points.copy()
-    bite, lost, found = _newton(ground, points, rows, around.leaf)
+    bite, lost, found = newton(ground, points, rows, around.leaf)
     if lost.any():
         left = rows[lost]
         points[left] = _between(ground, (points[left], found), left, around, crossings)
@@ -82,7 +82,7 @@ def landed(
     return points, bite
 
 
-def _newton(ground: Ground, points: Floats, rows: Ints, leaf: Ints) -> tuple[Ints, Bools, Deepest]:
+def newton(ground: Ground, points: Floats, rows: Ints, leaf: Ints) -> tuple[Ints, Bools, Deepest]:
     """Move the vertices `rows`; returns their deepest bites, which do not settle, put back, and the field
     there."""
     longest = 0.5 * min(ground.grid.cell_mm)

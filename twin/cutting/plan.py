@@ -20,6 +20,8 @@ PER_CELL = 2100
 """[bytes] of a surface cell, as measured on gears: mostly the tangents of the bites around it"""
 LEAST = 1e-6
 """[mm] below which a cell is hopeless, whatever its size"""
+FACETS = 2.0
+"""Tolerances within which facets of the general way keep to the cut."""
 CORE = 0.02
 """Share of the blank's radius that the grid leaves out around the axis."""
 
@@ -67,6 +69,17 @@ def plan_grid(
         z_high=blank.z_range[1],
         cell=(cell, cell, 2.0 * cell),
     )
+
+
+def facet_limit(
+    blank: Blank, cutters: Iterable[Cutter], *, cell_mm: float | None = None, tolerance_um: float = 1.0
+) -> float:
+    """How far the facets of the general way may stand off the cut [mm].
+
+    Twice the tolerance; where a cell was asked for, twice the tolerance that it would follow from.
+    """
+    share = tolerance_um if cell_mm is None else (cell_mm / _cell(blank, cutters)) ** 2
+    return FACETS * 1e-3 * share
 
 
 def _memory(blank: Blank, low: float, cell: float) -> float:
