@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.cutting.blank import Blank
 from twin.cutting.grid import Grid, cartesian
 from twin.cutting.refine import LEAF, Leaves
 from twin.cutting.sweep import Deepest, Sweep
@@ -59,6 +60,17 @@ def node_depths(sweep: Sweep, grid: Grid, leaves: Leaves) -> Floats:
     depth[0] = depth[-1] = -1.0
     depth[:, :, 0] = depth[:, :, -1] = -1.0
     return depth
+
+
+def left_volume(grid: Grid, depth: Floats, blank: Blank) -> float:
+    """About how much of the blank is left [mm³]: what lies around the nodes that are kept, and their core."""
+    r, z = np.meshgrid(grid.r, grid.z, indexing="ij")
+    inside = blank.contains(np.column_stack([r.ravel(), np.zeros(r.size), z.ravel()])).reshape(r.shape)
+    kept = grid.sectors - (depth > 0).sum(axis=1)
+    dr, dz = grid.r[1] - grid.r[0], grid.z[1] - grid.z[0]
+    around = float((inside * kept * r).sum()) * dr * dz * 2.0 * np.pi / grid.sectors
+    low = grid.r[0] - 0.5 * dr
+    return around + np.pi * max(low * low - 0.25 * blank.bore_mm**2, 0.0) * blank.length_mm
 
 
 def _owned(leaves: Leaves) -> tuple[Ints, Ints]:

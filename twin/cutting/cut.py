@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.check import Errors, check, coarse, missed
-from twin.cutting.crossings import find_crossings, leaf_cells, node_depths
+from twin.cutting.crossings import find_crossings, leaf_cells, left_volume, node_depths
 from twin.cutting.dual import Cells, Surface, contour
 from twin.cutting.engagement import StockCylinder, axes_apart, scraped
 from twin.cutting.facets import divided
@@ -29,8 +29,6 @@ from twin.cutting.sweep import Sweep
 Floats = NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-CRUMB = 1e-6
-"""[mm³] below which a severed piece is rounding"""
 MUCH_COARSER = 2.0
 """Times the tolerance by which facets may stray before a note says so."""
 FORMED_ERROR = 0.1
@@ -172,7 +170,8 @@ def _general(
     progress("meshing", 0.7)
     ground = Ground(sweep, grid, leaves)
     surface, leaf = contour(ground, Cells(cell_low, case, leaf), crossings)
-    surface = divided(ground, surface, leaf, blank, limit)
+    volume = left_volume(grid, depth, blank)
+    surface = divided(ground, surface, leaf, blank, limit=limit, volume=volume)
     progress("checking", 0.8)
     errors, facets = check(sweep, surface, blank)
     notes += coarse(errors, facets, limit) + missed(sweep, grid, leaves, surface, depth=depth, blank=blank)
@@ -181,7 +180,7 @@ def _general(
 
 def _severed(remains: Remains) -> list[str]:
     """What to say of pieces that fell off."""
-    volumes = [volume for volume in remains.loose_volumes_mm3 if volume > CRUMB]
+    volumes = remains.loose_volumes_mm3
     if not volumes:
         return []
     return [f"{len(volumes)} severed piece(s), the largest of {volumes[0]:.3g} mm³, fell off the part"]

@@ -21,20 +21,51 @@ INWARDS = 1.4
 """Error amid a facet against the largest of its sides: on an evenly curved surface 4/3."""
 HIDDEN = 2.0 / 3.0
 """Share of what is aimed at by which metal may stand out amid a facet: a peak is higher than its middle."""
+VOLUME = 0.7e-4
+"""Share of the part's volume that may lie between its facets and the cut"""
+SAMPLED = 4000
+"""points of facets that tell it"""
+STRAYED = 2.0
+"""Times its distance from the cut by which a point is moved to where two bites meet"""
 ROUNDS = 8
 """of division"""
 SHORTEST = 2e-3
 """[mm] of a side that is divided no more"""
 
 
-def divided(ground: Ground, surface: Surface, leaf: Ints, blank: Blank, limit: float) -> Surface:
+def divided(
+    ground: Ground, surface: Surface, leaf: Ints, blank: Blank, *, limit: float, volume: float
+) -> Surface:
     """The surface with facets that keep within `limit` [mm] of the cut, as far as they lie in the blank.
 
-    `leaf` (n,) tells the finest block that each vertex comes from.
+    Chords of hollow places all lie on one side of them: where that would make the part, of about `volume`
+    [mm³], smaller or larger by more than VOLUME of it, facets are divided further. `leaf` (n,) tells the
+    finest block that each vertex comes from.
     """
-    vertices, bite = surface.vertices, surface.bite
-    mesh = Mesh(vertices, surface.faces, bite, leaf, blank.contains(vertices))
-    asked = np.arange(len(surface.faces))
+    inside = blank.contains(surface.vertices)
+    mesh = _kept(ground, Mesh(surface.vertices, surface.faces, surface.bite, leaf, inside), blank, limit)
+    off = abs(_between(ground, mesh))
+    if off > VOLUME * volume > 0.0:
+        mesh = _kept(ground, mesh, blank, limit * VOLUME * volume / off)
+    return Surface(mesh.vertices, mesh.faces, mesh.bite)
+
+
+def _between(ground: Ground, mesh: Mesh) -> float:
+    """Volume between facets and cut [mm³], from random points of the facets; + = the mesh stands too deep."""
+    faces = mesh.faces[mesh.cut_in(mesh.faces)]
+    if not len(faces):
+        return 0.0
+    a, b, c = mesh.vertices[faces].transpose(1, 0, 2)
+    area = np.cumsum(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0)
+    rng = np.random.default_rng(2)
+    row = np.minimum(np.searchsorted(area, area[-1] * rng.random(SAMPLED)), len(faces) - 1)
+    points = np.einsum("nc,ncx->nx", rng.dirichlet(np.ones(3), SAMPLED), mesh.vertices[faces[row]])
+    return float(area[-1] * ground.field(points, mesh.leaf[faces[row, 0]]).depth.mean())
+
+
+def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
+    """The mesh with facets within `limit` [mm] of the cut."""
+    asked = np.arange(len(mesh.faces))
     aim, first = limit / INWARDS, 0
     for _ in range(ROUNDS):
         faces = mesh.faces[asked]
@@ -52,7 +83,7 @@ def divided(ground: Ground, surface: Surface, leaf: Ints, blank: Blank, limit: f
             break
         first = len(mesh.vertices)
         mesh, asked = _split(ground, mesh, blank, sides.ends[far], worst.of(far))
-    return Surface(mesh.vertices, mesh.faces, mesh.bite)
+    return mesh
 
 
 def _bumpy(ground: Ground, mesh: Mesh, faces: Ints, sides: Sides, worst: Worst, *, aim: float) -> Ints:
@@ -74,7 +105,8 @@ def _split(ground: Ground, mesh: Mesh, blank: Blank, ends: Ints, worst: Worst) -
     points, leaf = a + worst.share[:, None] * (b - a), mesh.leaf[ends[:, 0]]
     two = np.flatnonzero(worst.bites[:, 0] != worst.bites[:, 1])
     owner = np.repeat(np.arange(len(two)), 2)
-    longest = 0.25 * lengths(mesh.vertices, ends[two])
+    # beside a ridge its bites meet far away: there the surface itself is near
+    longest = STRAYED * worst.error[two]
     points[two] = onto_edges(ground.sweep, points[two], owner, worst.bites[two].reshape(-1), longest)
     bite, lost, _ = newton(ground, points, np.arange(len(points)), leaf)
     kept = np.flatnonzero(~lost)

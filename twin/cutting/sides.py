@@ -39,7 +39,7 @@ class Mesh:
 
     def cut_in(self, corners: Ints) -> Bools:
         """Which facets or sides (k, c) bites made, within the blank at least at one end."""
-        return (self.bite[corners] >= 0).all(axis=1) & self.within[corners].any(axis=1)
+        return np.logical_and((self.bite[corners] >= 0).all(axis=1), self.within[corners].any(axis=1))
 
 
 @dataclass(frozen=True, slots=True)

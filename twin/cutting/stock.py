@@ -19,6 +19,8 @@ Ints = NDArray[np.int64]
 
 CHORD = 2.5e-4
 """How far the blank's facets may lie inside its circles [mm]."""
+CRUMB = 1e-6
+"""[mm³] below which a severed piece is rounding"""
 
 
 def blank_solid(blank: Blank) -> manifold3d.Manifold:
@@ -85,7 +87,7 @@ class Remains:
     """before its vertices were rounded to single precision, as that of the blank"""
     blank_volume_mm3: float
     loose_volumes_mm3: tuple[float, ...]
-    """of the pieces that the cut severed, largest first"""
+    """of the pieces that the cut severed, larger than CRUMB, largest first"""
     genus: int
     origin: Ints
     """(m,) face of the removed surfaces, counted through all of them, that each face is a piece of;
@@ -109,7 +111,7 @@ def subtract(blank: Blank, *surfaces: Surface) -> Remains:
         faces=faces,
         volume_mm3=_volume(left.vertices, left.faces),
         blank_volume_mm3=whole.volume(),
-        loose_volumes_mm3=left.loose,
+        loose_volumes_mm3=tuple(size for size in left.loose if size > CRUMB),
         genus=left.genus,
         origin=left.origin[kept],
     )
