@@ -22,6 +22,7 @@ from twin.machine import (
     MachineSpec,
     MachineZero,
     Setup,
+    TailstockMount,
     ToolMount,
     WorkMount,
     assemble,
@@ -102,6 +103,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         arbor_diameter_mm=job.work.arbor_diameter_mm or ARBOR * _root_diameter(job),
         stick_out_mm=job.work.stick_out_mm or _stick_out(job, cutters, lowest_z_mm),
     )
+    tailstock = _tailstock(job)
     tools, mounts = [], []
     for number, cutter in cutters.items():
         mount = ToolMount(
@@ -114,7 +116,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         # X counts from the tips of the first tool: another one's centre stands where that one's would
         aside = 2.0 * (first.radius - cutter.radius)
         zero = MachineZero(x_mm=reference.X + aside, z_mm=reference.Z)
-        assembly = assemble(spec, setup, work=work, tool=mount, zero=zero)
+        assembly = assemble(spec, setup, work=work, tool=mount, zero=zero, tailstock=tailstock)
         kinematics = replace(
             faulty(
                 read_kinematics(assembly.model, assembly.joints), job.faults, work_z=-job.work.length_mm / 2
@@ -132,8 +134,31 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         probe=_probe(
             job,
             tools[0].kinematics,
-            lambda stylus: assemble(spec, setup, work=work, tool=mounts[0], zero=machine_zero, stylus=stylus),
+            lambda stylus: assemble(
+                spec,
+                setup,
+                work=work,
+                tool=mounts[0],
+                zero=machine_zero,
+                stylus=stylus,
+                tailstock=tailstock,
+            ),
         ),
+    )
+
+
+def _tailstock(job: Job) -> TailstockMount | None:
+    """The job's tailstock on the machine, where it has one."""
+    table = job.setup.tailstock
+    if table is None:
+        return None
+    return TailstockMount(
+        hole_diameter_mm=table.hole(job.work.bore_mm),
+        point_angle_deg=table.point_angle_deg,
+        centre_diameter_mm=table.centre_diameter_mm,
+        centre_length_mm=table.centre_length_mm,
+        quill_diameter_mm=table.quill_diameter_mm,
+        quill_length_mm=table.quill_length_mm,
     )
 
 

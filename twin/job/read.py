@@ -5,6 +5,7 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal, NoReturn, TypeVar, get_args, get_origin, get_type_hints
 
@@ -28,6 +29,7 @@ from twin.job.schema import (
     MachineTable,
     Reference,
     SetupTable,
+    Tailstock,
     Tool,
     WorkTable,
 )
@@ -123,7 +125,7 @@ class _Reader:
             path=self.file,
             machine=self._table(MachineTable, ("machine",)),
             work=work,
-            setup=self._setup(),
+            setup=self._setup(work),
             tools=self._dressed(tools, nominal),
             program=self._program(),
             nominal=nominal,
@@ -186,13 +188,39 @@ class _Reader:
                 self._fail(path, f"{'.'.join(path)}: {cause.text}", cause.remedy.removeprefix("valid: "))
         return done
 
-    def _setup(self) -> SetupTable:
+    def _setup(self, work: WorkTable) -> SetupTable:
         raw = self._raw(("setup",))
-        self._known(raw, ("reference", "offsets", "tool_offsets"), ("setup",))
+        self._known(raw, ("reference", "tailstock", "offsets", "tool_offsets"), ("setup",))
         table = self._table(SetupTable, ("setup",))
         if "reference" in raw:
             table = dataclasses.replace(table, reference=self._table(Reference, ("setup", "reference")))
+        if "tailstock" in raw:
+            table = dataclasses.replace(table, tailstock=self._tailstock(work))
         return table
+
+    def _tailstock(self, work: WorkTable) -> Tailstock:
+        path = ("setup", "tailstock")
+        tailstock = self._table(Tailstock, path)
+        face = 2.0 * float(work.blank().steps()[0, 1])
+        sizes = {
+            "bore_mm": work.bore_mm,
+            "hole_diameter_mm": tailstock.hole(work.bore_mm),
+            "centre_diameter_mm": tailstock.centre_diameter_mm,
+        }
+        for (inner, small), (outer, large) in pairwise(sizes.items()):
+            if small >= large:
+                self._fail(
+                    (*path, outer),
+                    f"setup.tailstock: {outer} {large:g} is not above {inner} {small:g}",
+                    f"above {small:g}",
+                )
+        if sizes["hole_diameter_mm"] >= face:
+            self._fail(
+                (*path, "hole_diameter_mm"),
+                f"setup.tailstock: the centre would be wider than the front face, {face:g} mm",
+                f"hole_diameter_mm below {face:g}",
+            )
+        return tailstock
 
     def _tools(self) -> dict[int, Tool | GapWheel]:
         if ("tool" in self.data) == ("tools" in self.data):

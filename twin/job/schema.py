@@ -92,10 +92,32 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Tailstock:
+    """`[setup] tailstock`: a live centre in the front face, on a quill"""
+
+    hole_diameter_mm: Positive | None = None
+    """where the cone enters the front face; left out = 8, or 2 more than the bore"""
+    point_angle_deg: Annotated[float, Meta(ge=20, le=120)] = 60.0
+    """of the whole cone"""
+    centre_diameter_mm: Positive = 30.0
+    """behind the cone"""
+    centre_length_mm: Positive = 40.0
+    """from the cone's end to the quill"""
+    quill_diameter_mm: Positive = 60.0
+    quill_length_mm: Positive = 150.0
+    """up to the barrel, which is twice as thick"""
+
+    def hole(self, bore_mm: float) -> float:
+        """Diameter of the centre hole in a part with this bore [mm]."""
+        return self.hole_diameter_mm or max(8.0, bore_mm + 2.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SetupTable:
     """`[setup]`"""
 
     reference: Reference = field(default_factory=Reference)
+    tailstock: Tailstock | None = None
     offsets: dict[str, dict[str, float]] = field(default_factory=dict)
     """G54 … G59 -> axis -> machine coordinate of the part zero; replaces the preset"""
     tool_offsets: dict[str, dict[str, float]] = field(default_factory=dict)

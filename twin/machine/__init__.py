@@ -14,6 +14,7 @@ from twin.machine.ideal import IdealMachine
 from twin.machine.physical import MujocoMachine
 from twin.machine.spec import Changes, MachineSpec, Setup, load_machine
 from twin.machine.sync_window import SyncWindow
+from twin.machine.tailstock import TailstockMount
 from twin.machine.watching import MachineError
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "MujocoMachine",
     "Setup",
     "SyncWindow",
+    "TailstockMount",
     "ToolMount",
     "WorkMount",
     "assemble",

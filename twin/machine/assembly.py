@@ -14,6 +14,7 @@ from twin.machine.bare import bare
 from twin.machine.drive import AxisDrive, DriveKind
 from twin.machine.spec import MachineSpec, Setup
 from twin.machine.stylus import StylusMount, mount_stylus
+from twin.machine.tailstock import TailstockMount, mount_tailstock
 
 STEEL = 7850.0
 """density [kg/m³]"""
@@ -108,8 +109,9 @@ def assemble(
     tool: ToolMount,
     zero: MachineZero | None = None,
     stylus: StylusMount | None = None,
+    tailstock: TailstockMount | None = None,
 ) -> Assembly:
-    """Mount work and tool on a machine, and a touch probe beside the tool, and compile it.
+    """Mount work and tool on a machine, a touch probe beside the tool, a tailstock, and compile it.
 
     Raises InputError for sizes that are not positive and for an MJCF that does not compile.
     """
@@ -124,6 +126,8 @@ def assemble(
     _apply_drives(mjcf, spec, setup)
     stick_out = work.length_mm + 80.0 if work.stick_out_mm is None else work.stick_out_mm
     _mount_work(mjcf, work, stick_out)
+    if tailstock is not None:
+        mount_tailstock(mjcf, tailstock, stick_out)
     _mount_tool(mjcf, tool)
     # Every frame of the tool chain stands in the tool centre at machine zero.
     mjcf.body("z_slide").pos = [0.0, 0.0, (stick_out + zero.z_mm) * MM]
