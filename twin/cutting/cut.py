@@ -18,7 +18,7 @@ from twin.cutting.grid import Grid
 from twin.cutting.landing import Ground
 from twin.cutting.moments import face_moments, moments
 from twin.cutting.motion import CutterMotion
-from twin.cutting.plan import CORE, facet_limit, plan_grid
+from twin.cutting.plan import CORE, facet_limit, plan_grid, useful
 from twin.cutting.refine import refine
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.regular import Regular, regular_cut
@@ -79,6 +79,7 @@ def cut(
     closest = min(_closest(c, m) for c, m in tools)
     cutters = [c for c, _ in tools]
     grid = plan_grid(blank, cutters, closest=closest, cell_mm=cell_mm, tolerance_um=tolerance_um)
+    cell_mm, tolerance_um = useful(blank, cutters, cell_mm=cell_mm, tolerance_um=tolerance_um)
     notes = [*_rubbing(blank, tools)]
     formed = _formed(blank, tools, grid.cell_mm[0])
     if formed is not None:

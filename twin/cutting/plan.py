@@ -20,6 +20,8 @@ PER_CELL = 2100
 """[bytes] of a surface cell, as measured on gears: mostly the tangents of the bites around it"""
 LEAST = 1e-6
 """[mm] below which a cell is hopeless, whatever its size"""
+WIDEST = 0.05
+"""Share of the blank's radius: in blocks of wider cells hardly a pass can be left out"""
 FACETS = 2.0
 """Tolerances within which facets of the general way keep to the cut."""
 CORE = 0.02
@@ -37,13 +39,15 @@ def plan_grid(
     """The grid for a cut whose edges come as near as `closest` [mm] to the work axis.
 
     `cell_mm` is its cell across the surface (twice that along z); left out, it follows from the teeth, the
-    size of the blank and the tolerance, to which errors go with the square of the cell. Raises InputError for
-    what is no cell or no tolerance, or would need more memory than ALLOWED, with the estimate.
+    size of the blank and the tolerance, to which errors go with the square of the cell. It is no wider than
+    WIDEST. Raises InputError for what is no cell or no tolerance, or would need more memory than ALLOWED,
+    with the estimate.
     """
     if cell_mm is not None and not (math.isfinite(cell_mm) and cell_mm > 0):
         raise InputError(f"a cell of {cell_mm:g} mm", remedy="valid: above 0, for example 0.1")
     if not (math.isfinite(tolerance_um) and tolerance_um > 0):
         raise InputError(f"a tolerance of {tolerance_um:g} µm", remedy="valid: above 0, for example 1")
+    cell_mm, tolerance_um = useful(blank, cutters, cell_mm=cell_mm, tolerance_um=tolerance_um)
     cell = _cell(blank, cutters) * math.sqrt(tolerance_um) if cell_mm is None else cell_mm
     lowest = max(CORE * blank.radius, 0.5 * blank.bore_mm, closest)
     low = max(lowest - 2.5 * cell, 0.5 * CORE * blank.radius)
@@ -69,6 +73,16 @@ def plan_grid(
         z_high=blank.z_range[1],
         cell=(cell, cell, 2.0 * cell),
     )
+
+
+def useful(
+    blank: Blank, cutters: Iterable[Cutter], *, cell_mm: float | None, tolerance_um: float
+) -> tuple[float | None, float]:
+    """Cell and tolerance asked for, or those of the widest cells that save any time."""
+    widest = WIDEST * blank.radius
+    if cell_mm is not None:
+        return min(cell_mm, widest), tolerance_um
+    return None, min(tolerance_um, max(widest / _cell(blank, cutters), 1.0) ** 2)
 
 
 def facet_limit(

@@ -89,3 +89,22 @@ def test_more_memory_than_allowed_is_said_with_a_tolerance_that_fits(tool):
     # errors go with the square of the cell
     usual = plan_grid(BLANK, [tool[0]], closest=17.0)
     assert fine.cell_mm[0] / usual.cell_mm[0] == pytest.approx(math.sqrt(float(found[1])), rel=0.02)
+
+
+@pytest.mark.parametrize("asked", [{"cell_mm": 1e9}, {"tolerance_um": 1e15}, {"cell_mm": 1e300}])
+def test_cells_wider_than_any_use_are_the_widest_useful(tool, asked):
+    """In blocks of wider cells no pass can be left out: they would cost hours."""
+    grid = plan_grid(BLANK, [tool[0]], closest=17.5, **asked)
+    assert BLANK.radius / 40 < min(grid.cell_mm[:2]) <= max(grid.cell_mm[:2]) < BLANK.radius / 15
+    assert max(grid.cells) < 200
+
+
+def test_a_cut_with_a_cell_wider_than_the_blank_ends_soon(synthetic):
+    small = Blank(diameter_mm=24.0, length_mm=2.0, bore_mm=6.0)
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+    tool = synthetic.hobbing(
+        hob, teeth=10, tip_x=7.5, z=(1.0, -3.0), feed=2.0, step_deg=10, ratio_factor=-1.0
+    )
+    wide, widest = (cut(small, (tool,), cell_mm=cell) for cell in (1e6, small.radius / 20.0))
+    assert wide.cell_mm == widest.cell_mm
+    assert wide.remains.volume_mm3 == widest.remains.volume_mm3
