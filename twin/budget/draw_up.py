@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.language.source import load_program
+from twin.budget.faces import FACE_ITEMS, FeltFaces, face_difference, face_values, feel_faces
 from twin.budget.felt import Felt, feel
-from twin.budget.items import difference, values
+from twin.budget.items import ITEMS, Item, difference, values
 from twin.budget.sources import IDEAL, MISREADING, Source, sources_of, with_drives
 from twin.cutters.cutter import Cutter
 from twin.cutting.fields import tool_field
@@ -23,7 +24,7 @@ from twin.cutting.motion import CutterMotion, RigidTransform
 from twin.errors import InputError, PartError, Place
 from twin.faults.encoders import stands
 from twin.inspection.involute import geometry
-from twin.inspection.nominal import GearNominal
+from twin.inspection.nominal import GearNominal, PolygonNominal
 from twin.inspection.tolerances import GearSize, gear_tolerance, outside_standard
 from twin.job.schema import Job
 from twin.presets import cutters_of, settings_of
@@ -32,6 +33,7 @@ from twin.setup import Ready, make_ready
 
 Floats = NDArray[np.float64]
 Values = dict[str, float | None]
+Part = Felt | FeltFaces
 Progress = Callable[[str], None]
 
 GRADED = (
@@ -64,6 +66,8 @@ class Budget:
     """The error budget of a job."""
 
     title: str
+    items: tuple[Item, ...]
+    """what is measured on such a part"""
     ideal: Values
     """item -> what the process itself leaves: feed marks, flats, the form of the hob [µm]"""
     shares: tuple[Share, ...]
@@ -73,6 +77,11 @@ class Budget:
     accuracy_class: int | None
     tolerances: dict[str, float]
     """item -> allowed [µm]; empty where no class is named"""
+
+    @property
+    def of_gear(self) -> bool:
+        """Whether the part is a gear, not a polygon."""
+        return self.items == ITEMS
 
     def weight(self, item: str, value: float | None) -> float:
         """A figure over what is allowed, or in µm where nothing is said of that."""
@@ -112,16 +121,15 @@ class _Task:
 
 
 def draw_up(job: Job, *, progress: Progress = lambda _text: None) -> Budget:
-    """The budget of a hobbed gear.
+    """The budget of a gear or a polygon.
 
-    Raises InputError for a job without a nominal gear, PartError where already the ideal part is none.
+    Raises InputError for a job without a nominal, PartError where already the ideal part is none.
     """
-    nominal = job.nominal
-    if not isinstance(nominal, GearNominal):
+    if job.nominal is None:
         raise InputError(
-            "a budget is drawn up for gears: this job names no nominal gear",
+            "a budget is drawn up for gears and polygons: this job does not say what it makes",
             place=Place(file=str(job.path)),
-            remedy='[nominal] kind = "gear"',
+            remedy='[nominal] kind = "gear" or "polygon"',
         )
     plain = replace(job, faults=IDEAL)
     cutters = cutters_of(plain)
@@ -138,7 +146,7 @@ def draw_up(job: Job, *, progress: Progress = lambda _text: None) -> Budget:
     try:
         ideal = _feel(plain, ready, session.motions)
     except PartError as cause:
-        raise PartError(f"already on ideal axes there is no gear to measure: {cause.text}") from cause
+        raise PartError(f"already on ideal axes there is no {_kind(job)} to measure: {cause.text}") from cause
     tasks = [
         *(
             _Task(job=replace(job, faults=s.faults), drives=s.drives, ideal=axes, phase=ideal.phase)
@@ -152,10 +160,10 @@ def draw_up(job: Job, *, progress: Progress = lambda _text: None) -> Budget:
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         found = dict(zip(order, pool.map(_felt, [tasks[k] for k in order]), strict=True))
     *each, real = (found[k] for k in range(len(tasks)))
-    return _budget(job, nominal, ideal, tuple(zip(sources, each, strict=True)), real)
+    return _budget(job, ideal, tuple(zip(sources, each, strict=True)), real)
 
 
-def _felt(task: _Task) -> Felt | str:
+def _felt(task: _Task) -> Part | str:
     """The part of a task, or why there is none."""
     job = task.job
     cutters = cutters_of(job)
@@ -177,16 +185,35 @@ def _felt(task: _Task) -> Felt | str:
 
 def _feel(
     job: Job, ready: Ready, motions: tuple[tuple[Cutter, CutterMotion], ...], *, phase: float = 0.0
-) -> Felt:
+) -> Part:
     blank = job.work.blank()
     fields = tuple(tool_field(c, m, blank.radius, blank.z_range) for c, m in motions)
     if not any(field.passes.count for field in fields):
         raise PartError("no edge ever swung past the blank: nothing was cut")
     turned = job.inspection.datum == "spindle"
     datum = ready.tools[0].kinematics.mount if turned else RigidTransform()
+    if isinstance(job.nominal, PolygonNominal):
+        return feel_faces(fields, job.nominal, blank, datum=datum, phase=phase)
     if not isinstance(job.nominal, GearNominal):
-        raise PartError("no nominal gear")
+        raise PartError("nothing is said of what the part should be")
     return feel(fields, geometry(job.nominal), blank, datum=datum, phase=phase)
+
+
+def _figures(part: Part) -> Values:
+    return face_values(part) if isinstance(part, FeltFaces) else values(part)
+
+
+def _beside(part: Part, reference: Part) -> Values:
+    """What a part has beside another one's figures."""
+    if isinstance(part, FeltFaces) and isinstance(reference, FeltFaces):
+        return face_values(face_difference(part, reference))
+    if isinstance(part, Felt) and isinstance(reference, Felt):
+        return values(difference(part, reference))
+    raise TypeError("a gear and a polygon have nothing to be compared by")
+
+
+def _kind(job: Job) -> str:
+    return "polygon" if isinstance(job.nominal, PolygonNominal) else "gear"
 
 
 def _driven(ready: Ready, kept: tuple[str, ...]) -> Ready:
@@ -202,10 +229,9 @@ def _driven(ready: Ready, kept: tuple[str, ...]) -> Ready:
 
 def _budget(
     job: Job,
-    nominal: GearNominal,
-    ideal: Felt,
-    each: tuple[tuple[Source, Felt | str], ...],
-    real: Felt | str,
+    ideal: Part,
+    each: tuple[tuple[Source, Part | str], ...],
+    real: Part | str,
 ) -> Budget:
     by_name = {source.name: one for source, one in each}
     shares = []
@@ -214,28 +240,32 @@ def _budget(
         said = next((r for r in (one, reference) if isinstance(r, str)), "")
         moved = {}
         if not isinstance(one, str) and not isinstance(reference, str):
-            moved = values(difference(one, reference))
+            moved = _beside(one, reference)
         shares.append(Share(name=source.name, words=source.words, values=moved, reason=said))
     together = Share(
         name="together",
         words="all together",
-        values={} if isinstance(real, str) else values(real),
+        values={} if isinstance(real, str) else _figures(real),
         reason=real if isinstance(real, str) else "",
     )
     budget = Budget(
         title=job.name,
-        ideal=values(ideal),
+        items=ITEMS if isinstance(ideal, Felt) else FACE_ITEMS,
+        ideal=_figures(ideal),
         shares=(),
         together=together,
-        accuracy_class=nominal.accuracy_class,
-        tolerances=_tolerances(job, nominal),
+        accuracy_class=job.nominal.accuracy_class if isinstance(job.nominal, GearNominal) else None,
+        tolerances=_tolerances(job),
     )
-    # a source that leaves no gear is the first to mend
+    # a source that leaves no part is the first to mend
     shares.sort(key=lambda share: (not share.reason, -budget.worst(share)[1]))
     return replace(budget, shares=tuple(shares))
 
 
-def _tolerances(job: Job, nominal: GearNominal) -> dict[str, float]:
+def _tolerances(job: Job) -> dict[str, float]:
+    nominal = job.nominal
+    if not isinstance(nominal, GearNominal):
+        return {}
     gear = geometry(nominal)
     size = GearSize(
         number_of_teeth=gear.teeth,

@@ -4,7 +4,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from twin.budget.draw_up import Budget, Share, Values
-from twin.budget.items import ITEMS
 from twin.budget.text import advice
 
 LEFT, BAR, ROW = 330.0, 420.0, 30.0
@@ -21,11 +20,12 @@ def render(budget: Budget) -> str:
         title=budget.title,
         accuracy_class=budget.accuracy_class,
         graded=bool(budget.tolerances),
-        items=[{"symbol": _lowered(item.symbol), "words": item.words} for item in ITEMS],
+        items=[{"symbol": _lowered(item.symbol), "words": item.words} for item in budget.items],
         process=_cells(budget, budget.ideal),
         rows=rows,
-        allowed=[_number(budget.tolerances.get(item.key)) for item in ITEMS],
-        advice=[_sentence(said) for said in advice(budget)],
+        allowed=[_number(budget.tolerances.get(item.key)) for item in budget.items],
+        of_gear=budget.of_gear,
+        advice=[_sentence(said, budget) for said in advice(budget)],
         picture=_picture(budget),
     )
 
@@ -49,7 +49,7 @@ def _cells(budget: Budget, values: Values) -> list[dict[str, object]]:
             if item.key in budget.tolerances
             else 0,
         }
-        for item in ITEMS
+        for item in budget.items
     ]
 
 
@@ -65,10 +65,10 @@ def _lowered(symbol: str) -> Markup:
     return Markup(f"{escape(head)}<sub>{escape(low)}</sub>") if low else Markup(escape(head))
 
 
-def _sentence(said: str) -> Markup:
+def _sentence(said: str, budget: Budget) -> Markup:
     """A sentence with a capital letter, a full stop, and the symbols in it set."""
     text = str(escape(f"{said[0].upper()}{said[1:]}."))
-    for item in ITEMS:
+    for item in budget.items:
         text = text.replace(f" {item.symbol},", f" {_lowered(item.symbol)},")
         text = text.replace(f" {item.symbol}.", f" {_lowered(item.symbol)}.")
     return Markup(text)
@@ -79,12 +79,12 @@ def _picture(budget: Budget) -> Markup:
     worst = [budget.worst(share) for share in budget.shares]
     longest = max([weight for _, weight in worst] + ([1.0] if budget.tolerances else [0.0])) or 1.0
     height = ROW * (len(worst) + 1)
-    symbols = {item.key: item.symbol for item in ITEMS}
+    symbols = {item.key: item.symbol for item in budget.items}
     parts: list[str] = []
     for k, (share, (item, weight)) in enumerate(zip(budget.shares, worst, strict=True)):
         y = k * ROW
         length = BAR * (1.0 if share.reason else weight / longest)
-        figure = "no gear" if share.reason else _figure(budget, share, item, weight, symbols.get(item, ""))
+        figure = "no part" if share.reason else _figure(budget, share, item, weight, symbols.get(item, ""))
         parts.append(f'<text x="{LEFT - 10:g}" y="{y + 19:g}" class="name">{escape(share.words)}</text>')
         css = "bar lost" if share.reason else "bar"
         parts.append(

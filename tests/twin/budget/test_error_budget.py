@@ -64,11 +64,57 @@ def test_each_source_shows_what_it_does_alone(job, tmp_path, capsys):
     assert "http" not in page
 
 
-def test_a_polygon_has_no_budget(tmp_path, capsys):
+@pytest.fixture
+def hexagon(tmp_path):
+    """A hexagon 6 mm long, its blank clamped off centre and askew."""
+    folder = tmp_path / "hexagon"
+    shutil.copytree(SCENES / "hexagon_af17", folder)
+    text = (folder / "job.toml").read_text(encoding="utf-8").replace("length_mm = 10.0", "length_mm = 6.0")
+    text += "[faults]\nwork_eccentricity_mm = 0.02\nwork_tilt_deg = 0.05\n"
+    (folder / "job.toml").write_text(text, encoding="utf-8")
+    program = (folder / "program.nc").read_text(encoding="utf-8")
+    (folder / "program.nc").write_text(program.replace("Z-12.", "Z-8."), encoding="utf-8")
+    return folder
+
+
+def test_each_source_shows_on_the_faces_of_a_polygon(hexagon, tmp_path, capsys):
+    out = tmp_path / "budget"
+    assert main(["budget", str(hexagon), "--out", str(out), "--quiet"]) == 0
+    said = capsys.readouterr().out
+    budget = json.loads((out / "budget.json").read_text(encoding="utf-8"))
+    # a head of R 40 - 8.5 = 31.5 mm between the axes leaves a bow of which 0.9 of the width show 0.81
+    assert budget["process_um"]["flatness"] == pytest.approx(0.81 * 13.04, abs=0.15)
+    assert abs(budget["process_um"]["across_flats"]) < 0.01
+    sources = {source["name"]: source["values_um"] for source in budget["sources"]}
+    off = sources["faults.work_eccentricity_mm"]
+    assert off["concentricity"] == pytest.approx(2 * 20.0, rel=0.01)
+    assert abs(off["across_flats"]) < 0.2
+    tilt = sources["faults.work_tilt_deg"]
+    # 5 % of the length are left out at each end; the tilt goes towards a face, or up to 30° beside it
+    most = 1e3 * 5.4 * math.tan(math.radians(0.05))
+    assert 0.86 * most < tilt["lean"] < 1.01 * most
+    assert abs(sources["drives"]["across_flats"]) < 0.5
+    assert budget["sources"][0]["name"] == "faults.work_eccentricity_mm"
+    assert "mend first: work clamped off centre" in said
+    assert "both flanks" not in (out / "budget.html").read_text(encoding="utf-8")
+
+
+def test_a_part_of_which_nothing_is_said_has_no_budget(hexagon, tmp_path, capsys):
+    text = (hexagon / "job.toml").read_text(encoding="utf-8")
+    (hexagon / "job.toml").write_text(text[: text.index("[nominal]")], encoding="utf-8")
     out = tmp_path / "out"
-    assert main(["budget", str(SCENES / "hexagon_af17"), "--out", str(out), "--quiet"]) == 2
-    assert "drawn up for gears" in capsys.readouterr().err
+    assert main(["budget", str(hexagon), "--out", str(out), "--quiet"]) == 2
+    assert "does not say what it makes" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_a_machine_on_which_nothing_matters_is_told_so(job, tmp_path, capsys):
+    text = (job / "job.toml").read_text(encoding="utf-8")
+    (job / "job.toml").write_text(text[: text.index("[faults]")], encoding="utf-8")
+    assert main(["budget", str(job), "--out", str(tmp_path / "out"), "--quiet"]) == 0
+    said = capsys.readouterr().out
+    assert "no source matters" in said
+    assert "mend first" not in said
 
 
 def test_where_already_the_ideal_part_is_no_gear_that_is_said(tmp_path, capsys):
