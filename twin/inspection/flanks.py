@@ -129,11 +129,12 @@ def _profiles(solid: Solid, placed: Placed, usable: Usable) -> _Scan:
     """Read all profiles in the measuring plane."""
     gear = placed.gear
     start, end = usable.start, max(usable.end, usable.start + 1e-3 * gear.module)
-    roll = np.linspace(start, start + 0.99 * (end - start), POINTS)
+    limits = (start, start + TIP_LIMIT * (end - start))
+    roll = _snapped(np.linspace(start, start + 0.99 * (end - start), POINTS), limits)
     read = read_flanks(solid, placed, np.array([placed.middle]), gear.radius_at(roll))
     return _Scan(
         position=roll,
-        limits=(start, start + TIP_LIMIT * (end - start)),
+        limits=limits,
         deviation=read.deviation[:, 0],
         facet=read.facet[:, 0],
         # a point touches its mate where its tangent to the base circle stands
@@ -146,7 +147,7 @@ def _helices(solid: Solid, placed: Placed) -> _Scan:
     """Read all helices on the measuring circle."""
     gear = placed.gear
     margin = 0.5 * (placed.high - placed.low) / POINTS
-    heights = np.linspace(placed.low + margin, placed.high - margin, POINTS)
+    heights = _snapped(np.linspace(placed.low + margin, placed.high - margin, POINTS), placed.helix_range)
     read = read_flanks(solid, placed, heights, np.array([gear.measuring_diameter / 2]))
     # along z a right-hand helix leans to +angle: material on left flanks, lack of it on right ones
     hand = -1.0 if gear.helix < 0 else 1.0
@@ -158,6 +159,17 @@ def _helices(solid: Solid, placed: Placed) -> _Scan:
         turn=np.array([gear.twist * (heights - placed.middle)] * 2),
         rise=(hand * SENSES[0], hand * SENSES[1]),
     )
+
+
+def _snapped(position: Floats, limits: tuple[float, float]) -> Floats:
+    """Return positions (m,) with the ones nearest to both ends of the evaluated range moved there.
+
+    A relief is steepest there: a point beside the end would miss a part of it.
+    """
+    moved = position.copy()
+    for limit in limits:
+        moved[int(np.argmin(np.abs(position - limit)))] = limit
+    return moved
 
 
 def _flank(

@@ -9,6 +9,9 @@ from twin.errors import InputError
 from twin.inspection.nominal import GearNominal
 from twin.inspection.solid import Floats
 
+MIDDLE = (0.25, 0.75)
+"""parts of the way from form to tip diameter between which helix and pitch are measured"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Involute:
@@ -39,7 +42,7 @@ class Involute:
     undercut: bool
     """the tool named cuts the involute's foot away"""
     measuring_diameter: float
-    """d_M = d + 2 x m_n, where helix and pitch are measured"""
+    """d_M = d + 2 x m_n, where helix and pitch are measured; within the middle of a flank that is short"""
     twist: float
     """rotation of the teeth along z [rad/mm], 2 pi / lead, + right-hand"""
 
@@ -156,7 +159,9 @@ def geometry(nominal: GearNominal) -> Involute:
         root_diameter=d_f,
         form_diameter=form_diameter,
         undercut=undercut,
-        measuring_diameter=d + 2 * x * m,
+        measuring_diameter=float(
+            np.clip(d + 2 * x * m, *(form_diameter + part * (d_a - form_diameter) for part in MIDDLE))
+        ),
         twist=2 * math.sin(beta) / (z * m),
     )
 

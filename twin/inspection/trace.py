@@ -30,8 +30,11 @@ def figures(
     `sense` turns a rise of material into the slope's sign.
     """
     u = (2 * position - limits[0] - limits[1]) / (limits[1] - limits[0])
-    level, rise = np.polynomial.polynomial.polyfit(u, deviation, 1)
-    bend = np.polynomial.polynomial.polyfit(u, deviation, 2)[2]
+    # each point stands for the length about it: what is steep at the ends counts as in the curve itself
+    apart = np.diff(u)
+    weight = np.sqrt(np.concatenate([[0.0], apart]) + np.concatenate([apart, [0.0]]))
+    level, rise = np.polynomial.polynomial.polyfit(u, deviation, 1, w=weight)
+    bend = np.polynomial.polynomial.polyfit(u, deviation, 2, w=weight)[2]
     return Figures(
         slope_um=sense * 2 * float(rise),
         form_um=float(np.ptp(deviation - level - rise * u)),

@@ -35,8 +35,18 @@ LACKING = (1e-3, 5.0)
 """an undercut is deeper at the start than this [mm] and than so many times the band of the flank above"""
 CORNER = (1e-4, 1.5)
 """and begins where this [mm] or so many times that band lacks"""
-GOES_ON = 1e-5
-"""a flank that lacks less than this [mm] below where the nominal's undercut begins has none"""
+ABOVE = 0.25
+"""part of the flank above a place that shows how it would go on below"""
+GOES_ON = (1e-5, 3.0, 1e-3)
+"""a flank that lacks less than this [mm] below where the nominal's undercut begins, or than so many times the
+band of the flank above, has none; with a wider limit than the third [mm] that cannot be told"""
+FOOT = 0.01
+"""part of all points in which a fillet too slight for a steep end may reach above the start"""
+ONWARD = 0.03
+"""part of the flank above that, which shows how it would go on below"""
+LEFT = (5e-5, 10.0, 2.5)
+"""a fillet or an undercut leaves that by more than this [mm], than so many times the band of that part, and
+than so many times the flanks' roughness"""
 UNDERCUT = 0.01
 """an undercut lacks more than this against the roll length down to the start: half a degree"""
 
@@ -163,7 +173,8 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
         return whole
     first, last = steep_ends(roll, flanks)
     near = ALIKE * POINTS
-    start_at = int(first[np.abs(first - np.median(first)) <= near].max(initial=0))
+    alike = np.abs(first - np.median(first)) <= near
+    start_at = int(first[alike].max(initial=0))
     end_at = int(last[np.abs(last - np.median(last)) <= near].min(initial=POINTS - 1))
     step = roll[1] - roll[0]
     start, end = form, tip
@@ -174,6 +185,8 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
         start = float(roll[min(start_at + 2 * BASE, POINTS - 1)])
         below = slice(max(start_at - 4 * BASE, 0), max(start_at - BASE, 1))
         undercut = bool(np.nansum(flanks[:, below] - flanks[:, [start_at + BASE]]) < 0)
+    else:
+        start = _above_fillets(roll, (flanks - facets)[alike], start)
     middle = flanks[:, round(MIDDLE * POINTS), None]
     corner = undercut_corner(roll, _median(flanks - middle), start=start, end=end)
     if corner is not None:
@@ -184,11 +197,31 @@ def usable_flank(solid: Solid, placed: Placed, *, root_radius: float, tip_diamet
 def _lacks_below(roll: Floats, flanks: Floats, form: float) -> bool:
     """Whether the usual flank of (n, m) lacks material below the roll length `form` [mm], or ends there."""
     usual = _median(flanks)
-    below, above = usual[roll < form], usual[roll >= form]
-    if len(below) == 0 or not np.isfinite(above[0]):
+    below, above = roll < form, (roll >= form) & (roll <= form + ABOVE * (roll[-1] - form))
+    if not below.any() or not np.isfinite(usual[above]).all():
         return False
-    seen = below[np.isfinite(below)]
-    return len(seen) < len(below) or bool((above[0] - seen).max() > GOES_ON)
+    if not np.isfinite(usual[below]).all():
+        return True
+    bend = np.polynomial.Polynomial.fit(roll[above], usual[above], 2)
+    limit = max(GOES_ON[0], GOES_ON[1] * float(np.ptp(usual[above] - bend(roll[above]))))
+    return limit > GOES_ON[2] or bool((bend(roll[below]) - usual[below]).max() > limit)
+
+
+def _above_fillets(roll: Floats, flanks: Floats, start: float) -> float:
+    """Return the roll length [mm] above all fillets and undercuts that end a little above `start`.
+
+    They do where a sound gear stands off its axis: the flanks (n, m) are not all cut to the same radius.
+    """
+    at, foot = int(np.searchsorted(roll, start)), round(FOOT * len(roll))
+    seen = flanks[:, at : at + foot + round(ONWARD * (len(roll) - at))]
+    seen = seen[np.isfinite(seen).all(axis=1)]
+    if seen.shape[1] < foot + 4 or len(seen) == 0:
+        return start
+    powers = np.vander(np.linspace(-1, 1, seen.shape[1]), 3)
+    rest = seen - np.linalg.lstsq(powers[foot:], seen[:, foot:].T, rcond=None)[0].T @ powers.T
+    limit = np.maximum(LEFT[1] * np.ptp(rest[:, foot:], axis=1), max(LEFT[0], LEFT[2] * _roughness(flanks)))
+    left = np.flatnonzero((np.abs(rest[:, :foot]) > limit[:, None]).any(axis=0))
+    return float(roll[at + left[-1] + 1]) if len(left) else start
 
 
 def _median(flanks: Floats) -> Floats:

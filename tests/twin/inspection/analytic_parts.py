@@ -1,7 +1,8 @@
 """Closed meshes of gears and polygons from their closed forms, with errors put in on purpose.
 
 Shares nothing with what it tests: flanks are points of the unwound thread, x = r_b e(phi) + s t(phi), and an
-error moves a point along that thread. Teeth are counted from 0, counter-clockwise from +X, as C turns.
+error is how much farther a point of roll length s stands along it. Teeth are counted from 0,
+counter-clockwise from +X, as C turns.
 """
 
 import math
@@ -35,11 +36,14 @@ def gear_mesh(
     chamfer: float = 0.0,
     trochoid: bool = False,
     pressure_deg: float = 20.0,
+    roll_corners: tuple[float, ...] = (),
+    z_corners: tuple[float, ...] = (),
 ):
     """Vertices and faces of a gear of ISO 53 profile A between z = -width and 0.
 
-    `chamfer` [mm] takes off the tips' edges at 45°. The root is a quarter of an ellipse, or with `trochoid`
-    (spur gears) the path of the rounded rack corner, which undercuts few teeth.
+    Where an error has a corner, at a roll length or a height, the mesh has one too: `roll_corners`,
+    `z_corners` [mm]. `chamfer` [mm] takes off the tips' edges at 45°. The root is a quarter of an ellipse, or
+    with `trochoid` (spur gears) the path of the rounded rack corner, which undercuts few teeth.
     """
     beta, alpha = math.radians(helix_deg), math.radians(pressure_deg)
     alpha_t = math.atan(math.tan(alpha) / math.cos(beta))
@@ -54,16 +58,18 @@ def gear_mesh(
         first_roll = math.sqrt(root_r[-1] ** 2 - r_b**2)
     last_roll = math.sqrt((r_a - chamfer) ** 2 - r_b**2)
     roll = np.linspace(first_roll, last_roll, math.ceil((last_roll - first_roll) / roll_step) + 1)
+    roll = with_corners(roll, roll_corners)
     half_at_base = (math.pi / 2 + 2 * shift * math.tan(alpha)) / teeth + math.tan(alpha_t) - alpha_t
     twist = 2 * math.sin(beta) / (teeth * module)
     layers = np.linspace(-width, 0.0, max(math.ceil(width / z_step), 1) + 1)
+    layers = with_corners(layers, z_corners)
     arc = np.linspace(0, 1, 8)[1:-1]
     quarter = np.linspace(0, math.pi / 2, 8)[1:]
 
     def side_of_tooth(k, side, z):
         """Radius and angle from the tooth's middle outward, from the form circle up to the tip."""
-        along = roll + error(k, side, roll, z)
-        return np.hypot(r_b, along), half_at_base - (roll / r_b - np.arctan2(along, r_b))
+        unwound = roll - error(k, side, roll, z)
+        return np.hypot(r_b, roll), half_at_base - (unwound / r_b - np.arctan2(roll, r_b))
 
     def ring(z):
         radii, angles = [], []
@@ -97,6 +103,30 @@ def gear_mesh(
             np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(len(radius), z)])
         )
     return loft(rings, bore=bore, offset=eccentricity)
+
+
+def with_corners(places, corners):
+    """Ascending places, and the corners between the first and the last of them."""
+    inner = [corner for corner in corners if places[0] < corner < places[-1]]
+    return np.unique(np.concatenate([places, inner]))
+
+
+def all_of(*errors: Error) -> Error:
+    """The sum of errors."""
+    return lambda tooth, side, roll, z: sum(error(tooth, side, roll, z) for error in errors)
+
+
+def relief(amount: float, begin: float, end: float, *, along: str, order: int = 1) -> Error:
+    """Material taken off [mm] from `begin` on, `amount` of it at `end`, in a line (1) or parabola (2).
+
+    `along` is "roll" (tip relief where end > begin, root relief where it is less) or "z" (end relief).
+    """
+
+    def error(tooth, side, roll, z):
+        at = roll if along == "roll" else np.full_like(roll, z)
+        return -amount * np.maximum((at - begin) / (end - begin), 0.0) ** order
+
+    return error
 
 
 def rack_corner(teeth, module, shift, alpha, points=120):
