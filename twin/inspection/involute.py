@@ -141,6 +141,7 @@ def geometry(nominal: GearNominal) -> Involute:
     d_f = d - 2 * m * (nominal.dedendum_factor - x)
     d_b = d * math.cos(alpha_t)
     form_diameter, undercut = _form_diameter(nominal, alpha_t, d)
+    lowest, highest = (form_diameter + part * (d_a - form_diameter) for part in MIDDLE)
     if d_f <= 0 or d_a <= max(d_f, d_b):
         raise InputError(
             f"nominal gear: tip diameter {d_a:.3f} mm and root diameter {d_f:.3f} mm leave no tooth flank",
@@ -159,9 +160,7 @@ def geometry(nominal: GearNominal) -> Involute:
         root_diameter=d_f,
         form_diameter=form_diameter,
         undercut=undercut,
-        measuring_diameter=float(
-            np.clip(d + 2 * x * m, *(form_diameter + part * (d_a - form_diameter) for part in MIDDLE))
-        ),
+        measuring_diameter=min(max(d + 2 * x * m, lowest), highest),
         twist=2 * math.sin(beta) / (z * m),
     )
 

@@ -102,6 +102,7 @@ def short_way(path: Path) -> Raw | None:
     return read(path)
 
 
+@np.errstate(invalid="ignore")  # a NaN may signal; it is told of where the solid is checked
 def joined(vertices: np.ndarray) -> tuple[Floats, Ints]:
     """Join vertices (n, 3), float32 or float64, that are equal to the last bit.
 

@@ -11,10 +11,12 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
+from twin.cli.main import main
 from twin.errors import InputError
 from twin.inspection.formats.digits import whole_numbers
 from twin.inspection.formats.others import read_other
 from twin.inspection.mesh_files import read_mesh, short_way
+from twin.inspection.solid import MeshError, check_solid
 from twin.output.meshes import write_3mf, write_glb, write_stl
 
 PLY = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -93,6 +95,43 @@ def test_what_is_no_whole_number(text):
         np.frombuffer(f"?{text}?".encode(), dtype=np.uint8), np.array([1]), np.array([1 + len(text)])
     )
     assert found is None
+
+
+def test_a_nan_that_signals_is_named(tmp_path):
+    signalling = np.array([0x7FA00000] * 9, dtype="<u4")
+    facet = bytes(12) + signalling.tobytes() + bytes(2)
+    path = tmp_path / "a.stl"
+    path.write_bytes(bytes(80) + struct.pack("<I", 1) + facet)
+    vertices, faces = read_mesh(path)
+    with pytest.raises(MeshError, match="not finite"):
+        check_solid(vertices, faces)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_damaged_files_end_in_a_result_or_a_message(gear, tmp_path_factory, capfd, seed):
+    """Broken off, bytes changed, lost or added, in every format: no traceback, nothing of a library's."""
+    rng = np.random.default_rng(seed)
+    folder = tmp_path_factory.mktemp("damaged")
+    suffix = ("stl", "glb", "3mf", "ply", "obj")[seed % 5]
+    path = folder / f"a.{suffix}"
+    trimesh.Trimesh(*gear, process=False).export(path)
+    data = bytearray(path.read_bytes())
+    at = int(rng.integers(len(data)))
+    match seed // 5 % 4:
+        case 0:
+            del data[at:]
+        case 1:
+            data[at : at + 8] = rng.bytes(8)
+        case 2:
+            del data[at : at + int(rng.integers(1, 60))]
+        case 3:
+            data[at % 300 : at % 300] = rng.bytes(3)
+    path.write_bytes(data)
+    code = main(["inspect", str(path)])
+    said = capfd.readouterr()
+    assert code in (0, 1, 2)
+    assert "Traceback" not in said.err
+    assert said.err.count("\n") == (code == 2)
 
 
 def test_words_in_capitals_and_exponents(tmp_path):
@@ -284,6 +323,11 @@ def test_unusual_3mf_is_left_to_trimesh(gear, tmp_path):
         ("a.glb", triangle(accessors=[]), "do not fit together"),
         ("a.glb", triangle(nodes=[{"children": [0]}]), "a node stands within itself"),
         ("a.glb", triangle(bufferViews=[{"buffer": 0, "byteOffset": 30}] * 2), "ends within them"),
+        (
+            "a.glb",
+            triangle(accessors=[{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}] * 2),
+            "not three numbers each|not a readable mesh",
+        ),
         ("a.3mf", b"PK\x03\x04" + bytes(50), "package cannot be opened"),
     ],
 )

@@ -1,5 +1,6 @@
 """Whatever the short ways leave, by trimesh: polygons, textures, nested objects, glTF in several files."""
 
+import logging
 import warnings
 from pathlib import Path
 
@@ -12,6 +13,7 @@ def read_other(path: Path) -> Raw:
     """Read a file of any format. Raises DamagedError."""
     import trimesh  # noqa: PLC0415 - half a second to load
 
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # what it stumbles over is ours to say
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -22,6 +24,9 @@ def read_other(path: Path) -> Raw:
     unit = "m" if suffix in (".glb", ".gltf") else "mm"
     if not isinstance(mesh, trimesh.Trimesh):
         return Raw(vertices=np.zeros((0, 3)), faces=None, unit=unit)
+    for name, table in (("vertices", mesh.vertices), ("faces", mesh.faces)):
+        if table.ndim != 2 or table.shape[1] != 3:
+            raise DamagedError(f"its {name} have not three numbers each")
     if suffix == ".3mf":
         unit = str(mesh.units or "millimeter").removesuffix("s").lower()
     return Raw(
