@@ -17,6 +17,7 @@ from controller.tables.alarms import as_json
 from twin.advice.advice import advice_as_json
 from twin.advice.dry import advised_run
 from twin.clashes.clashes import judged
+from twin.course import CHUNK, Course
 from twin.cutting.chips import chips
 from twin.cutting.cut import cut
 from twin.cutting.plan import plan_grid
@@ -25,7 +26,6 @@ from twin.inspection.inspection import inspect
 from twin.inspection.sheet import to_json
 from twin.job.schema import Job
 from twin.load.figures import load_figures
-from twin.load.forces import CuttingLoad
 from twin.load.rounds import run_under_load
 from twin.outcome import Options, Outcome
 from twin.output.arrays import save_arrays
@@ -38,8 +38,8 @@ from twin.progress import Reporter, Silent
 from twin.regression.judge import misses
 from twin.report.charts.contact import contact_file
 from twin.report.page import write_report
-from twin.session import CHUNK, Session, run_program
-from twin.setup import make_ready, require_analogue
+from twin.session import Session, begin_program, session_of
+from twin.setup import Ready, make_ready, require_analogue
 from twin.summary import report_data
 
 BYTES_PER_SAMPLE = 160
@@ -87,26 +87,26 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
             tolerance_um=options.tolerance_um,
         )
     period = ready.spec.control_period_s
-    samples = math.ceil(cycle / period)
-    tell.stage(
-        f"running {cycle:.0f} s of machine time (recording up to {samples * BYTES_PER_SAMPLE / 1e6:.0f} MB)"
-    )
+    size = math.ceil(cycle / period) * BYTES_PER_SAMPLE / 1e6
+    tell.stage(f"running {cycle:.0f} s of machine time (recording up to {size:.0f} MB)")
 
-    def run(load: CuttingLoad | None) -> Session:
-        return run_program(
+    def begin(*, ideal: bool) -> Course:
+        return begin_program(
             program,
             settings,
             ready,
-            ideal=options.ideal,
-            load=load,
+            ideal=ideal,
             progress=lambda seconds: tell.share(seconds / max(cycle, period)),
         )
 
-    loaded = None
     with watch.measure("machine"):
-        if job.physics.cutting_load:
-            loaded = run_under_load(job, ready, run, tell=tell.stage, progress=tell.share)
-        session = judged(blank, loaded.session if loaded else run(None))
+        course = begin(ideal=options.ideal)
+        loaded = (
+            run_under_load(job, ready, course, outline=begin(ideal=True), tell=tell.stage)
+            if job.physics.cutting_load
+            else None
+        )
+        session = judged(blank, loaded.session if loaded else _gone(course, ready))
     with result_folder(out) as folder, Background() as background:
         background.start(session.recording.save, folder / "recording.npz")
         tell.stage("cutting")
@@ -147,7 +147,7 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
             advice=advice,
             missed=misses(
                 job.expect,
-                to_json(inspection),
+                {**to_json(inspection), **load_figures(loaded)},
                 alarms=[alarm.number for alarm in session.alarms],
                 warnings=[warning.number for warning in (*session.warnings, *advice)],
             ),
@@ -157,6 +157,11 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
             background.finish()
         _write(folder, outcome, deviation, watch)
     return outcome
+
+
+def _gone(course: Course, ready: Ready) -> Session:
+    course.go()
+    return session_of(course, ready)
 
 
 def lowest_z(job: Job, foreseen: DryRun) -> float | None:

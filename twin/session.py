@@ -1,16 +1,17 @@
 """Controller and machine on one clock, and the recording of what they did."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.clock import Chunk, Feedback, Machine
+from controller.clock import Machine
 from controller.cnc import Controller
 from controller.language.source import Program
 from controller.tables.alarms import Alarm
+from twin.course import Course, Tape
 from twin.cutters.cutter import Cutter
 from twin.cutting.motion import CutterMotion
 from twin.errors import PartError
@@ -21,17 +22,11 @@ from twin.machine import Guarded, IdealMachine, MujocoMachine, SyncWindow
 from twin.presets import ControllerSettings
 from twin.recording import BlockRef, Recording
 from twin.setup import MountedTool, Ready
-from twin.sync import spectrum, sync_error
+from twin.sync import spectrum
 
 Floats = NDArray[np.float64]
 
-CHUNK = 4096
-"""[ticks] proposed at once where nobody watches"""
-SETTLE_S = 0.5
-"""[s] of a dwell that are run before the rest is passed over"""
 MM_PER_UM = 1e-3
-LONGEST_RUN_S = 6 * 3600.0
-"""[s] of recorded motion; more would not fit the memory of a small machine"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,148 +46,71 @@ class Session:
     """common variables of the control at the end, #100 to #199 and #500 to #999"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Tape:
-    """What one chunk, or all of them, left: the columns of a recording, row by row."""
-
-    time: Floats
-    setpoint: Floats
-    actual: Floats
-    block: NDArray[np.int32]
-    sync: NDArray[np.bool_]
-    sync_error: Floats
-    tool: NDArray[np.int16]
-    rapid: NDArray[np.bool_]
-
-    @staticmethod
-    def of(chunk: Chunk, feedback: Feedback, tick_s: float) -> "_Tape":
-        """The rows of one chunk that the machine has really made."""
-        n = feedback.ticks
-        return _Tape(
-            time=np.arange(chunk.first_tick + 1, chunk.first_tick + n + 1, dtype=np.float64) * tick_s,
-            setpoint=feedback.setpoint,
-            actual=feedback.actual,
-            block=chunk.block[:n],
-            sync=chunk.sync[:n],
-            sync_error=sync_error(chunk, feedback),
-            tool=chunk.tool[:n],
-            rapid=np.zeros(n, dtype=bool) if chunk.rapid is None else chunk.rapid[:n],
-        )
-
-    @staticmethod
-    def joined(tapes: list["_Tape"], axes: int) -> "_Tape":
-        """All rows, one after the other."""
-        empty = np.zeros((0, axes))
-        none = _Tape(
-            time=empty[:, 0],
-            setpoint=empty,
-            actual=empty,
-            block=np.zeros(0, dtype=np.int32),
-            sync=np.zeros(0, dtype=bool),
-            sync_error=empty[:, 0],
-            tool=np.zeros(0, dtype=np.int16),
-            rapid=np.zeros(0, dtype=bool),
-        )
-        names = [f.name for f in fields(_Tape)]
-        return _Tape(**{name: np.concatenate([getattr(t, name) for t in (none, *tapes)]) for name in names})
-
-
 def run_program(
     program: Program,
     settings: ControllerSettings,
     ready: Ready,
     *,
     ideal: bool,
-    load: CuttingLoad | None = None,
     progress: Callable[[float], None] = lambda _seconds: None,
 ) -> Session:
     """Run a program on the machine as made ready, or on one whose axes follow their setpoints exactly; it
-    stops where its bodies collide. `load`: what the cut does to axes and mounts."""
-    controller = Controller(
-        program,
-        parameters=settings.parameters,
-        offsets=settings.offsets,
-        tick_s=ready.spec.control_period_s,
-        signals=settings.signals,
-        events=settings.events,
-    )
+    stops where its bodies collide. Raises PartError for a run beyond LONGEST_RUN_S."""
+    course = begin_program(program, settings, ready, ideal=ideal, progress=progress)
+    course.go()
+    return session_of(course, ready)
+
+
+def begin_program(
+    program: Program,
+    settings: ControllerSettings,
+    ready: Ready,
+    *,
+    ideal: bool,
+    progress: Callable[[float], None] = lambda _seconds: None,
+) -> Course:
+    """The same before its first tick."""
+
+    def controller() -> Controller:
+        return Controller(
+            program,
+            parameters=settings.parameters,
+            offsets=settings.offsets,
+            tick_s=ready.spec.control_period_s,
+            signals=settings.signals,
+            events=settings.events,
+        )
+
     if ideal:
         contact = None if ready.probe is None else ready.probe.contact
-        machine: Machine = IdealMachine(
-            len(controller.axes), settings.encoders, contact=contact, period_s=controller.tick_s
-        )
+        axes, period_s = len(ready.tools[0].assembly.joints), ready.spec.control_period_s
+        machine: Machine = IdealMachine(axes, settings.encoders, contact=contact, period_s=period_s)
     else:
         machine = MujocoMachine(misread(ready.driven, settings.encoders))
     machine = SyncWindow(machine, settings.parameters.number(9006))
     guarded = Guarded(machine, {tool.number: tool.assembly for tool in ready.tools})
-    return record(controller, guarded, ready, load=load, progress=progress)
+    return Course(controller, guarded, progress=progress)
 
 
-def record(
-    controller: Controller,
-    machine: Machine,
-    ready: Ready,
-    *,
-    load: CuttingLoad | None = None,
-    progress: Callable[[float], None] = lambda _seconds: None,
-) -> Session:
-    """Run the program to its end or its first alarm. Raises PartError for a run beyond LONGEST_RUN_S."""
-    tapes: list[_Tape] = []
-    skipped = recorded = 0
-    settle = round(SETTLE_S / controller.tick_s)
-    while True:
-        idle = controller.idle_ticks()
-        if idle > 4 * settle and tapes:
-            ticks = idle - 2 * settle
-            controller.skip(ticks)
-            machine.rest(ticks)
-            skipped += ticks
-        chunk = controller.propose(min(CHUNK, settle) if idle > 4 * settle else CHUNK)
-        if chunk.ticks == 0:
-            break
-        feedback = machine.advance(chunk, load)
-        tapes.append(_Tape.of(chunk, feedback, controller.tick_s))
-        controller.commit(feedback)
-        recorded += feedback.ticks
-        if recorded * controller.tick_s > LONGEST_RUN_S:
-            raise PartError(
-                f"the program moves for more than {LONGEST_RUN_S / 3600:g} hours",
-                remedy="check the feed; run a part of the program",
-            )
-        progress(chunk.first_tick * controller.tick_s)
-    tape = _Tape.joined(tapes, len(controller.axes))
-    recording, motions = _recording(controller, ready, tape, load)
-    return Session(
-        recording=recording,
-        motions=motions,
-        alarms=controller.alarms,
-        warnings=controller.warnings,
-        skipped_s=skipped * controller.tick_s,
-        rapid=tape.rapid,
-        common=controller.common_variables,
-    )
+def record(controller: Controller, machine: Machine, ready: Ready) -> Session:
+    """Run a controller's program to its end or its first alarm. Raises PartError for a run beyond
+    LONGEST_RUN_S."""
+    course = Course(lambda: controller, machine)
+    course.go()
+    return session_of(course, ready)
 
 
-def _recording(
-    controller: Controller, ready: Ready, tape: _Tape, load: CuttingLoad | None
-) -> tuple[Recording, tuple[tuple[Cutter, CutterMotion], ...]]:
-    """The recording with the tool in the part frame, and each tool's stretch of motion."""
+def session_of(course: Course, ready: Ready, load: CuttingLoad | None = None) -> Session:
+    """What a course has left so far; `load`: what the cut has done to axes and mounts."""
+    controller, tape = course.controller, course.tape()
     n = len(tape.time)
     centre, axis, zero = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
+    pushed = load.recorded(ticks_of(tape, controller.tick_s)) if load else None
     motions: list[tuple[Cutter, CutterMotion]] = []
-    pushed = load.recorded(np.rint(tape.time / controller.tick_s).astype(np.int64) - 1) if load else None
-    deflection = None if pushed is None else pushed.deflection_um * MM_PER_UM
-    for first, last, mounted, cuts in _stretches(ready, tape.tool):
-        rows = slice(first, last)
-        motion = cutter_motion(
-            mounted.kinematics,
-            tape.time[rows],
-            tape.actual[rows],
-            None if deflection is None else deflection[rows],
-        )
-        centre[first:last], axis[first:last], zero[first:last] = part_frame(motion)
-        if cuts and last - first > 1:
-            motions.append((mounted.cutter, motion))
+    for rows, cutter, motion in motions_on(tape, ready, None if pushed is None else pushed.deflection_um):
+        centre[rows], axis[rows], zero[rows] = part_frame(motion)
+        if cutter is not None:
+            motions.append((cutter, motion))
     recording = Recording(
         time_s=tape.time,
         axes=controller.axes,
@@ -216,7 +134,36 @@ def _recording(
         tool_zero=zero,
         load=pushed,
     )
-    return recording, tuple(motions)
+    return Session(
+        recording=recording,
+        motions=tuple(motions),
+        alarms=controller.alarms,
+        warnings=controller.warnings,
+        skipped_s=course.skipped * controller.tick_s,
+        rapid=tape.rapid,
+        common=controller.common_variables,
+    )
+
+
+def ticks_of(tape: Tape, tick_s: float) -> NDArray[np.int64]:
+    """(n,) number of each row's tick, from 0."""
+    return np.rint(tape.time / tick_s).astype(np.int64) - 1
+
+
+def motions_on(
+    tape: Tape, ready: Ready, deflection_um: Floats | None = None
+) -> list[tuple[slice, Cutter | None, CutterMotion]]:
+    """Rows and motion of each stretch with one tool of two rows or more, `deflection_um` (n, 3) of the mounts
+    in it; no cutter where the touch probe is in its place."""
+    found = []
+    for first, last, mounted, cuts in _stretches(ready, tape.tool):
+        if last - first < 2 <= len(tape.time):
+            continue
+        rows = slice(first, last)
+        pushed = None if deflection_um is None else deflection_um[rows] * MM_PER_UM
+        motion = cutter_motion(mounted.kinematics, tape.time[rows], tape.actual[rows], pushed)
+        found.append((rows, mounted.cutter if cuts else None, motion))
+    return found
 
 
 def tool_motions(

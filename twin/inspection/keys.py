@@ -90,6 +90,27 @@ POLYGON: Mapping[str, Quantity] = {
     "flatness_class": Quantity.FLATNESS_CLASS,
 }
 KEYS: Mapping[str, Quantity] = {**COMMON, **GEAR, **POLYGON}
+"""of the part"""
+CUTTING_LOAD: Mapping[str, Quantity] = {
+    "cutting_load.settled": Quantity.FLAG,
+    **dict.fromkeys(("cutting_load.windows", "cutting_load.rounds"), Quantity.COUNT),
+    **{
+        f"cutting_load.{name}": Quantity.NUMBER
+        for name in (
+            "moved_um",
+            "frequency_hz",
+            "k_c11",
+            "m_c",
+            "removed_mm3",
+            "energy_j",
+            "mean_power_w",
+            "largest_power_w",
+            "largest_deflection_um",
+            *(f"largest_{letter}" for letter in "XYZABC"),
+        )
+    },
+}
+"""of a run under cutting forces; forces by axis letter [N, N m]"""
 
 
 def figure(values: Mapping[str, Any], key: str) -> Figure:

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
-from twin.inspection.keys import KEYS, Quantity
+from twin.inspection.keys import CUTTING_LOAD, KEYS, Quantity
 
+FIGURES = {**KEYS, **CUTTING_LOAD}
+"""what can be expected"""
 LISTS = ("alarms", "warnings")
 """numbers that must come up, these and no others"""
 LIMITS = {"value", "tolerance", "min", "max"}
@@ -43,7 +45,7 @@ class Expectation:
     """One line of `[expect]`."""
 
     key: str
-    """of `twin.inspection.keys.KEYS`, or one of LISTS"""
+    """of FIGURES, or one of LISTS"""
     wanted: Between | str | bool | tuple[str, ...]
 
 
@@ -70,10 +72,10 @@ def _wanted(way: tuple[str, ...], value: Any, fail: Fail) -> Between | str | boo
         if not isinstance(value, list) or not all(isinstance(number, str) for number in value):
             raise fail(way, f"{key} is a list of numbers", f'{key} = [], {key} = ["PS1594"]')
         return tuple(value)
-    quantity = KEYS.get(key)
+    quantity = FIGURES.get(key)
     if quantity is None:
-        near = get_close_matches(key, (*KEYS, *LISTS), n=3, cutoff=0.75)
-        raise fail(way, f"unknown key {key!r} in [expect]", ", ".join(near or (*LISTS, *KEYS)))
+        near = get_close_matches(key, (*FIGURES, *LISTS), n=3, cutoff=0.75)
+        raise fail(way, f"unknown key {key!r} in [expect]", ", ".join(near or (*LISTS, *FIGURES)))
     if isinstance(value, dict):
         return _between(way, key, quantity, value, fail)
     if quantity is Quantity.COUNT and isinstance(value, int) and not isinstance(value, bool):

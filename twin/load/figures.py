@@ -21,6 +21,7 @@ def load_figures(loaded: LoadedRun | None) -> dict[str, object]:
     return {
         "cutting_load": {
             "settled": loaded.settled,
+            "windows": loaded.windows,
             "rounds": loaded.rounds,
             "moved_um": loaded.moved_um[-1] if loaded.moved_um else 0.0,
             "frequency_hz": loaded.frequency_hz,
@@ -51,7 +52,11 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
         ("Largest power", f"{figures['largest_power_w']:.0f} W"),
         ("Largest torque", f"{figures[f'largest_{tool}']:.3g} N m at the tool"),
         ("Give", f"up to {figures['largest_deflection_um']:.3g} µm"),
-        ("Rounds", f"{loaded.rounds}, the last moved {figures['moved_um']:.2g} µm{frequency}"),
+        (
+            "Rounds",
+            f"at most {loaded.rounds} in each of {loaded.windows} windows, "
+            f"the last moved {figures['moved_um']:.2g} µm{frequency}",
+        ),
     ]
 
 
@@ -62,8 +67,9 @@ def load_words(loaded: LoadedRun) -> str:
         return "no metal removed"
     state = "settled" if loaded.settled else "not settled"
     return (
-        f"{state} after {loaded.rounds} rounds; {figures['removed_mm3']:.1f} mm³ for "
-        f"{figures['energy_j'] / 1e3:.3g} kJ; power while cutting {figures['mean_power_w']:.0f} W, at most "
+        f"{state} in {loaded.windows} windows of at most {loaded.rounds} rounds; "
+        f"{figures['removed_mm3']:.1f} mm³ for {figures['energy_j'] / 1e3:.3g} kJ; "
+        f"power while cutting {figures['mean_power_w']:.0f} W, at most "
         f"{figures['largest_power_w']:.0f} W; mounts give way by up to "
         f"{figures['largest_deflection_um']:.3g} µm (rays {loaded.resolution_mm:.2g} mm apart)"
     )

@@ -63,7 +63,12 @@ class Physics:
     work_stiffness_n_per_um: Positive = 60.0
     """of work, arbor and spindle against the bed, the same in every direction [plausible]"""
     load_resolution_mm: Positive | None = None
-    """distance of the rays on which metal is counted; None = a twelfth of the tooth pitch"""
+    """distance of the rays on which metal is counted; None = a 24th of the tooth pitch"""
+
+    @property
+    def compliance_um_per_n(self) -> float:
+        """Of both mounts together, springs in a row."""
+        return 1.0 / self.tool_stiffness_n_per_um + 1.0 / self.work_stiffness_n_per_um
 
 
 def material_of(name: str, physics: Physics) -> Material:

@@ -6,8 +6,8 @@ its thickness exactly, however thin it is. Metal that hangs over an undercut goe
 """
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,19 +25,23 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Tools = tuple[tuple[Cutter, CutterMotion], ...]
 
-RAYS_PER_PITCH = 12.0
+RAYS_PER_PITCH = 18.0
 RAYS = 60_000
 """that a count has at most where the job names no resolution; it may have ten times as many"""
-PASSES = 24
+PASSES = 12
 """looked at together, at most"""
 FAR = 1e4
 """[mm] longer than any ray"""
 THINNEST = 1e-7
 """[mm] of metal that counts as some"""
 STEPS = 20
-"""of false position towards the end of a ray, at most"""
+"""towards the end of a ray, at most"""
+HALVED = 3
+"""steps after which the bound that has stood is taken to lie nearer"""
 CLOSE = 1e-5
 """[mm] of depth at which the end of a ray counts as found"""
+ROUNDING = 1e-9
+"""[rad]"""
 SLACK = 0.02
 """[mm] added to the way of the stock until it meets an edge"""
 
@@ -76,8 +80,8 @@ class Removal:
 
 
 @dataclass(slots=True)
-class _Rays:
-    """The brush: rays at angles and heights of the part frame."""
+class Stock:
+    """What stands of the blank: rays at angles and heights of the part frame, angle by angle."""
 
     cos: Floats
     """(m,) of the angle"""
@@ -92,9 +96,16 @@ class _Rays:
     """angle between neighbours [rad]"""
     rise: float
     """height between neighbours [mm]"""
+    step: float
+    """distance of the rays on the blank's surface, as asked for [mm]"""
 
     @classmethod
-    def of(cls, blank: Blank, step: float) -> "_Rays":
+    def of(cls, blank: Blank, cutters: Iterable[Cutter], resolution_mm: float | None = None) -> "Stock":
+        """A whole blank; `resolution_mm` is the distance of the rays on its surface.
+
+        Raises InputError for a resolution that would need too much memory or time.
+        """
+        step = _step(blank, cutters, resolution_mm)
         around = math.ceil(2.0 * math.pi * blank.radius / step)
         along = math.ceil(blank.length_mm / step)
         low, high = blank.z_range
@@ -109,7 +120,12 @@ class _Rays:
             inner=blank.bore_mm / 2.0,
             turn=2.0 * math.pi / around,
             rise=(high - low) / along,
+            step=step,
         )
+
+    def copy(self) -> "Stock":
+        """The same metal once more, to be cut by itself."""
+        return replace(self, end=self.end.copy())
 
     def points(self, ray: Ints, radius: Floats) -> Floats:
         """(n, 3) at some radii of rays (n,)."""
@@ -121,36 +137,39 @@ def removal(
     tools: Tools,
     *,
     resolution_mm: float | None = None,
-    progress: Callable[[float], None] = lambda _share: None,
 ) -> Removal:
-    """The metal that the tools take away; `resolution_mm` is the distance of the rays on the blank's surface.
+    """The metal that the tools take away from a blank; `resolution_mm` is the distance of the rays on its
+    surface.
 
     Raises InputError for a resolution that would need too much memory or time.
     """
-    step = _step(blank, tools, resolution_mm)
-    rays = _Rays.of(blank, step)
+    stock = Stock.of(blank, [cutter for cutter, _ in tools], resolution_mm)
+    fields_of = [DepthField(cutter, motion, blank.radius, blank.z_range) for cutter, motion in tools]
+    return cut_off(stock, [(one, np.arange(one.passes.count)) for one in fields_of], [m for _, m in tools])
+
+
+def cut_off(
+    stock: Stock, passes: Sequence[tuple[DepthField, Ints]], motions: Sequence[CutterMotion]
+) -> Removal:
+    """What some passes of each stretch's field, stretch by stretch, take off the stock; it is cut."""
     names = [f.name for f in fields(Removal) if f.name != "resolution_mm"]
     shapes = {"chip": (0, 3), "time_s": (0, 2), "push": (0, 2)}
     shapes |= dict.fromkeys(("place_mm", "lever_mm", "speed"), (0, 3))
     parts = {
         name: [np.zeros(shapes.get(name, (0,)), np.int64 if name == "chip" else float)] for name in names
     }
-    for number, (cutter, motion) in enumerate(tools):
-        field = DepthField(cutter, motion, blank.radius, blank.z_range)
-        for first in range(0, field.passes.count, PASSES):
-            progress((number + first / field.passes.count) / len(tools))
-            passes = np.arange(first, min(first + PASSES, field.passes.count))
-            for name, values in _cut(field, motion, rays, passes, number).items():
+    for number, ((field, index), motion) in enumerate(zip(passes, motions, strict=True)):
+        for first in range(0, len(index), PASSES):
+            for name, values in _cut(field, motion, stock, index[first : first + PASSES], number).items():
                 parts[name].append(values)
-    progress(1.0)
-    return Removal(**{name: np.concatenate(parts[name]) for name in names}, resolution_mm=step)
+    return Removal(**{name: np.concatenate(parts[name]) for name in names}, resolution_mm=stock.step)
 
 
-def _step(blank: Blank, tools: Tools, wanted: float | None) -> float:
-    """The resolution asked for, or a twelfth of the tooth pitch or of the edge's width [mm]."""
+def _step(blank: Blank, cutters: Iterable[Cutter], wanted: float | None) -> float:
+    """The resolution asked for, or an 18th of the tooth pitch or of the edge's width [mm]."""
     finest = math.sqrt(2.0 * math.pi * blank.radius * blank.length_mm / RAYS)
     if wanted is None:
-        wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c, _ in tools]
+        wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c in cutters]
         return max(min([blank.radius, *wide]) / RAYS_PER_PITCH, finest)
     least = finest / math.sqrt(10.0)
     if wanted < least:
@@ -162,7 +181,7 @@ def _step(blank: Blank, tools: Tools, wanted: float | None) -> float:
 
 
 def _cut(
-    field: DepthField, motion: CutterMotion, rays: _Rays, passes: Ints, stretch: int
+    field: DepthField, motion: CutterMotion, rays: Stock, passes: Ints, stretch: int
 ) -> dict[str, NDArray]:
     """What some passes that follow one another take off the rays; the rays are cut."""
     ray, index = _met(field, motion, rays, passes)
@@ -179,26 +198,59 @@ def _cut(
     return _seen(field, motion, rays, (ray, index, end, start), stretch)
 
 
-def _met(field: DepthField, motion: CutterMotion, rays: _Rays, passes: Ints) -> tuple[Ints, Ints]:
+def _met(field: DepthField, motion: CutterMotion, rays: Stock, passes: Ints) -> tuple[Ints, Ints]:
     """Pairs of rays and passes whose edges come to the rays' ends or further in."""
-    p, samples = field.passes, np.arange(len(motion.time_s))
+    p = field.passes
+    work, centre = _at(motion, motion.work_angle, p.at[passes]), _at(motion, motion.centre, p.at[passes])
+    standing = _facing(field, motion, rays, (work, centre[:, 0], p.travel[passes]))
+    place = motion.mount.moved(rays.points(standing, rays.end[standing]))
+    x, y, z = place.T
+    towards, across = motion.basis[0], motion.basis[1]
     rows: list[tuple[Ints, Ints]] = []
-    ends = motion.mount.moved(rays.points(np.arange(len(rays.z)), rays.end))
-    for index in passes:
-        work = float(np.interp(p.at[index], samples, motion.work_angle))
-        centre = np.array([np.interp(p.at[index], samples, column) for column in motion.centre.T])
-        cos, sin = math.cos(work), math.sin(work)
-        turned = np.column_stack([ends[:, 0] * cos - ends[:, 1] * sin, ends[:, 0] * sin + ends[:, 1] * cos])
-        off = np.column_stack([turned, ends[:, 2]]) - centre
-        a, b = off @ motion.basis[0], off @ motion.basis[1]
+    for index, turned, middle in zip(passes, work, centre, strict=True):
+        cos, sin = math.cos(turned), math.sin(turned)
+        off_x, off_y, off_z = x * cos - y * sin - middle[0], x * sin + y * cos - middle[1], z - middle[2]
+        a = off_x * towards[0] + off_y * towards[1] + off_z * towards[2]
+        b = off_x * across[0] + off_y * across[1] + off_z * across[2]
         # the sooner or later the edge comes, the further the stock has gone on
         way = p.travel[index] * np.minimum(np.abs(np.arctan2(b, a)) / REACH, 1.0) + SLACK
-        ray = np.flatnonzero((np.hypot(a, b) < field.cutter.radius + way) & (rays.end > rays.inner))
+        ray = standing[np.hypot(a, b) < field.cutter.radius + way]
         rows.append((ray, np.full(len(ray), index)))
     return np.concatenate([ray for ray, _ in rows]), np.concatenate([index for _, index in rows])
 
 
-def _end(field: DepthField, rays: _Rays, ray: Ints, index: Ints) -> Floats:
+def _facing(
+    field: DepthField, motion: CutterMotion, rays: Stock, seen: tuple[Floats, Floats, Floats]
+) -> Ints:
+    """Rays that still stand, and on the side of the work where some passes' edges can come to them: `seen`
+    are work angle, distance of the axes and the stock's travel (n,) of each.
+
+    Metal at an angle φ from the tool stands at most its radius · cos φ nearer to it, and what the clamping
+    shifts.
+    """
+    work, away, travel = seen
+    high = float(rays.end.max(initial=0.0))
+    farthest = math.hypot(high, float(np.abs(rays.z).max(initial=0.0)))
+    shift = np.linalg.norm(motion.mount.rotation - np.eye(3), 2) * farthest
+    shift += np.linalg.norm(motion.mount.translation)
+    least = float((away - travel).min()) - field.cutter.radius - SLACK - float(shift)
+    standing = rays.end > rays.inner
+    if least > 0.0 and np.allclose(motion.basis[0], [-1.0, 0.0, 0.0]):
+        half = math.acos(min(least / high, 1.0)) + 0.5 * float(np.ptp(work)) + ROUNDING
+        middle = -0.5 * float(work.min() + work.max())
+        if half < math.pi:
+            standing &= rays.cos * math.cos(middle) + rays.sin * math.sin(middle) >= math.cos(half)
+    return np.flatnonzero(standing)
+
+
+def _at(motion: CutterMotion, values: Floats, sample: Floats) -> Floats:
+    """Values (n, ...) of a motion at fractional samples (m,)."""
+    cell = np.clip(sample.astype(np.int64), 0, len(motion.time_s) - 2)
+    share = (sample - cell).reshape(-1, *[1] * (values.ndim - 1))
+    return values[cell] + share * (values[cell + 1] - values[cell])
+
+
+def _end(field: DepthField, rays: Stock, ray: Ints, index: Ints) -> Floats:
     """(n,) radii at which passes cut rays off; inf where they do not."""
     out = np.full(len(ray), np.inf)
     high = rays.end[ray]
@@ -209,18 +261,50 @@ def _end(field: DepthField, rays: _Rays, ray: Ints, index: Ints) -> Floats:
     below = field.evaluate(rays.points(ray, low), index).depth
     through = below >= 0  # the edge comes from below, or through to the bore
     below = np.where(through, -above, below)
-    at = high.copy()
-    rows = np.arange(len(cut))
-    for _ in range(STEPS):
-        at[rows] = high[rows] - above[rows] / (above[rows] - below[rows]) * (high[rows] - low[rows])
-        depth = field.evaluate(rays.points(ray[rows], at[rows]), index[rows]).depth
-        cuts = depth > 0
-        inside, outside = rows[cuts], rows[~cuts]
-        high[inside], above[inside], below[inside] = at[inside], depth[cuts], 0.5 * below[inside]
-        low[outside], below[outside], above[outside] = at[outside], depth[~cuts], 0.5 * above[outside]
-        rows = rows[np.abs(depth) > CLOSE]
-    out[cut] = np.where(through, rays.inner, at)
+    out[cut] = np.where(through, rays.inner, _zero(field, rays, (ray, index), (low, below), (high, above)))
     return out
+
+
+def _zero(
+    field: DepthField,
+    rays: Stock,
+    pairs: tuple[Ints, Ints],
+    outside: tuple[Floats, Floats],
+    inside: tuple[Floats, Floats],
+) -> Floats:
+    """(n,) radii between others, (n,) each with their depths below and above 0, where the depth is zero.
+
+    Secants between the last two, which start from inside: depth grows no faster than the radius, so nothing
+    is passed over. A secant that leaves the bounds gives way to false position between them.
+    """
+    (low, below), (high, above) = (
+        tuple(value.copy() for value in outside),
+        tuple(value.copy() for value in inside),
+    )
+    before, depth_before = high.copy(), above.copy()
+    at = np.maximum(high - above, low)
+    rows = np.arange(len(at))
+    for step in range(STEPS):
+        depth = field.evaluate(rays.points(pairs[0][rows], at[rows]), pairs[1][rows]).depth
+        cuts = depth > 0
+        ins, outs = rows[cuts], rows[~cuts]
+        high[ins], above[ins] = at[ins], depth[cuts]
+        low[outs], below[outs] = at[outs], depth[~cuts]
+        if step % HALVED == HALVED - 1:
+            below[ins] *= 0.5
+            above[outs] *= 0.5
+        open_ = np.abs(depth) > CLOSE
+        rows, depth = rows[open_], depth[open_]
+        if not len(rows):
+            break
+        x, lower, upper = at[rows], low[rows], high[rows]
+        change = depth - depth_before[rows]
+        secant = x - depth * (x - before[rows]) / np.where(change == 0.0, 1.0, change)
+        false = upper - above[rows] / (above[rows] - below[rows]) * (upper - lower)
+        fits = (change != 0.0) & (secant > lower) & (secant < upper)
+        before[rows], depth_before[rows] = x, depth
+        at[rows] = np.where(fits, secant, false)
+    return at
 
 
 def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:
@@ -235,7 +319,7 @@ def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:
 def _seen(
     field: DepthField,
     motion: CutterMotion,
-    rays: _Rays,
+    rays: Stock,
     pieces: tuple[Ints, Ints, Floats, Floats],
     stretch: int,
 ) -> dict[str, NDArray]:
@@ -253,7 +337,7 @@ def _seen(
     place, lever, speed = _edge(motion, rays.points(ray, middle), met[1].instant)
     # the edge needs some time to cross the ray's own breadth and height as well
     ends = np.stack([met[0].instant, met[1].instant, met[2].instant])
-    ends = np.interp(ends, np.arange(len(motion.time_s)), motion.time_s)
+    ends = _at(motion, motion.time_s, ends.reshape(-1)).reshape(ends.shape)
     around = speed[:, 1] * place[:, 0] - speed[:, 0] * place[:, 1]
     across = np.abs(speed[:, 2]) * rays.rise + np.abs(around) * rays.turn
     half = 0.5 * across / np.maximum((speed * speed).sum(axis=1), 1e-12)

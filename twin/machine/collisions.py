@@ -7,6 +7,7 @@ by d. So a whole run takes some hundred distances, and the first tick that touch
 
 # pyright: reportAttributeAccessIssue=false
 
+import copy
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -80,6 +81,14 @@ class Guarded:
     def rest(self, ticks: int) -> None:
         """Let `ticks` pass in which nothing moves."""
         self._machine.rest(ticks)
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "Guarded":
+        """Another machine in the same state; what is known of distances is common to both."""
+        other = Guarded.__new__(Guarded)
+        memo[id(self)] = other
+        other._machine = copy.deepcopy(self._machine, memo)
+        other._shapes, other._first = self._shapes, self._first
+        return other
 
 
 class _Shapes:

@@ -4,6 +4,8 @@ Kloss: M = 2 M_b / (s / s_b + s_b / s), s the speed lost against the field, M_b 
 Under load the spindle runs slower than it is told; beyond M_b it stalls.
 """
 
+import copy
+
 from twin.machine.drive import AxisDrive
 from twin.machine.encoder import encoder
 from twin.machine.terminals import Terminals
@@ -34,6 +36,12 @@ class Induction:
     def observe(self) -> None:
         """Read the encoder at the end of a period."""
         self._at.reading[0] = self._read(self._at.position[0])
+
+    def moved_to(self, at: Terminals) -> "Induction":
+        """The same motor in the same state, wired to another machine."""
+        other = copy.copy(self)
+        other._at = at
+        return other
 
     def speed(self, period_s: float) -> float:
         """Commanded speed over the last period."""

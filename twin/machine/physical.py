@@ -2,7 +2,8 @@
 
 # pyright: reportAttributeAccessIssue=false
 
-from dataclasses import dataclass
+import copy
+from dataclasses import dataclass, replace
 
 import mujoco  # its bindings are compiled and carry no types
 import numpy as np
@@ -129,6 +130,23 @@ class MujocoMachine:
     def rest(self, ticks: int) -> None:
         """Let `ticks` pass in which nothing moves: settled drives hold their axes where they are."""
         self._tick += ticks
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "MujocoMachine":
+        """Another machine in the same state; what was compiled is common to both."""
+        other = copy.copy(self)
+        memo[id(self)], memo[id(self.assembly.joints_alone)] = other, self.assembly.joints_alone
+        other.data = copy.copy(self.data)
+        other._reading = self._reading.copy()
+        other._tripped = []
+        other._warnings = other.data.warning.number
+        other._watcher, other._stylus = copy.deepcopy((self._watcher, self._stylus), memo)
+        other._axes = []
+        for k, (name, axis) in enumerate(zip(self.assembly.joints, self._axes, strict=True)):
+            at = terminals(self.assembly.joints_alone, other.data, name, view(other._reading, k))
+            loop = axis.loop
+            moved = loop.moved_to(at, other._tripped.append) if isinstance(loop, Servo) else loop.moved_to(at)
+            other._axes.append(replace(axis, at=at, loop=moved, backlash=copy.copy(axis.backlash)))
+        return other
 
     def _run(self, chunk: Chunk, limit: int, watch: Watch | None, pressing: Pressing | None) -> _Stretch:
         """Step through the chunk, at most `limit` ticks, to where it has to end.

@@ -28,8 +28,18 @@ class PhasedLoad(Protocol):
         """(ticks,) of that spindle at the start of each tick, in the motion that the load was found on."""
         ...
 
+    @property
+    def parts(self) -> int:
+        """Cells of a tick, in which its forces are constant on that motion."""
+        ...
+
+    def impulse(self, first_tick: int, ticks: int) -> Floats:
+        """(ticks · parts + 1, axes) forces on that motion, summed up from the start of a tick on cell by cell
+        [N · ticks, N m · ticks]."""
+        ...
+
     def __call__(self, first_tick: int, ticks: int) -> Floats:
-        """(ticks, axes) forces on that motion, a `controller.clock.Load`."""
+        """(ticks, axes) mean forces on that motion, a `controller.clock.Load`."""
         ...
 
 
@@ -46,6 +56,8 @@ class Pressing:
         self._before = 0
         self._reference: list[float] = []
         self._rate: list[float] = []
+        self._parts = 1
+        self._impulse: list[list[float]] = []
         if not isinstance(load, PhasedLoad):
             self._forces = _rows(load, first_tick, ticks, axes)
             return
@@ -53,6 +65,8 @@ class Pressing:
         begin = max(first_tick - REACH, 0)
         self._before = first_tick - begin
         self._forces = _rows(load, begin, self._before + ticks + REACH, axes)
+        self._parts = load.parts
+        self._impulse = load.impulse(begin, len(self._forces)).tolist()
         angle = load.angle_deg(begin, len(self._forces) + 1) * SI_PER_DEG
         self._reference, self._rate = angle.tolist(), np.diff(angle).tolist()
 
@@ -68,10 +82,18 @@ class Pressing:
             return forces[place]
         if speed * step <= 0.0:
             return self._nothing  # an edge that stands or goes back cuts nothing
+        # the mean over the tick that begins at that angle, wherever the cells' bounds lie in it
         ahead = place + min(max((angle - self._reference[place]) / step, -REACH), REACH)
-        place = min(max(int(ahead), 0), len(forces) - 2)
-        share = min(max(ahead - place, 0.0), 1.0)
-        return [a + share * (b - a) for a, b in zip(forces[place], forces[place + 1], strict=True)]
+        ahead = min(max(ahead, 0.0), len(forces) - 1.0) * self._parts
+        cell = min(int(ahead), len(self._impulse) - 2 - self._parts)
+        share = ahead - cell
+        begin, end = (
+            self._impulse[cell : cell + 2],
+            self._impulse[cell + self._parts : cell + self._parts + 2],
+        )
+        if not share:
+            return [b - a for a, b in zip(begin[0], end[0], strict=True)]
+        return [(c - a) + share * ((d - c) - (b - a)) for a, b, c, d in zip(*begin, *end, strict=True)]
 
 
 def _rows(load: Load, first_tick: int, ticks: int, axes: int) -> list[list[float]]:

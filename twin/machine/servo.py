@@ -10,6 +10,7 @@ feed-forward nothing lags and nothing overshoots.
 In scalars, on MuJoCo's own memory: for so few axes several times faster than the same law on arrays.
 """
 
+import copy
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -132,8 +133,12 @@ class Servo:
             self._periods_at_limit = 0
             self._force_now[0] = force
             return
-        # At the limit the integral stands still, else it would wind up.
+        # At the limit the integral takes up no more than the limit leaves, else it would wind up.
         self._periods_at_limit += 1
+        step, over = integral - self._force_integral, force - limit if force > limit else force + limit
+        self._force_integral += (
+            min(step, max(step - over, 0.0)) if over > 0 else max(step, min(step - over, 0.0))
+        )
         self._force_now[0] = limit if force > limit else -limit
         if self._periods_at_limit >= self._overload:
             self._trip(self)
@@ -156,6 +161,13 @@ class Servo:
         limit = self._error_limit
         if not -limit <= lag <= limit:
             self._trip(self)
+
+    def moved_to(self, at: Terminals, trip: Callable[["Servo"], None]) -> "Servo":
+        """The same drive in the same state, wired to another machine."""
+        other = copy.copy(self)
+        other._position_now, other._force_now, other._reading_now = at.position, at.force, at.reading
+        other._trip = trip
+        return other
 
     def follow(self, setpoint: float) -> None:
         """Observe as the slave of a gear box, whose setpoint of this instant is known only now."""

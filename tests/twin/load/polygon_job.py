@@ -3,10 +3,12 @@
 from pathlib import Path
 
 from controller.language.source import parse_program
+from twin.course import Course
 from twin.job import read_job
 from twin.load.rounds import LoadedRun, run_under_load
+from twin.load.windows import SHORTEST
 from twin.presets import cutters_of, settings_of
-from twin.session import Session, run_program
+from twin.session import Session, begin_program, session_of
 from twin.setup import Ready, make_ready
 
 JOB = """
@@ -51,8 +53,14 @@ class Polygon:
         self.ready: Ready = make_ready(self.job, cutters, lowest_z_mm=-1.0)
         self.program = parse_program(PROGRAM.format(x=x), file="program.nc")
 
-    def run(self, load=None, *, ideal: bool = True) -> Session:
-        return run_program(self.program, self.settings, self.ready, ideal=ideal, load=load)
+    def begin(self, *, ideal: bool = True) -> Course:
+        return begin_program(self.program, self.settings, self.ready, ideal=ideal)
 
-    def loaded(self, *, ideal: bool = True) -> LoadedRun:
-        return run_under_load(self.job, self.ready, lambda load: self.run(load, ideal=ideal))
+    def run(self, load=None, *, ideal: bool = True) -> Session:
+        course = self.begin(ideal=ideal)
+        course.go(load=load)
+        return session_of(course, self.ready, load)
+
+    def loaded(self, *, ideal: bool = True, shortest: int = SHORTEST) -> LoadedRun:
+        course, outline = self.begin(ideal=ideal), self.begin()
+        return run_under_load(self.job, self.ready, course, outline=outline, shortest=shortest)

@@ -35,10 +35,11 @@ def test_power_forces_and_give_are_drawn(tmp_path):
     assert section is not None
     assert section.values["head"] == rows
     figures = load_figures(loaded)["cutting_load"]
+    assert recording.load is not None
     assert isinstance(figures, dict)
     assert figures["settled"] is True
     assert figures["largest_Y"] == np.abs(recording.load.axes[:, 2]).max()
-    assert f"settled after {loaded.rounds} rounds" in load_words(loaded)
+    assert f"settled in {loaded.windows} windows of at most {loaded.rounds} rounds" in load_words(loaded)
     columns = tmp_path / "recording.npz"
     recording.save(columns)
     saved = np.load(columns)

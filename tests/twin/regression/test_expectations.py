@@ -222,3 +222,17 @@ def test_a_part_that_is_nothing_says_why():
         expect(number_of_teeth=Between(low=20, high=20), kind="none"), {"kind": None, "reason": "no teeth"}
     )
     assert missed.got == "not measured: no teeth"
+
+
+def test_loads_of_a_run_can_be_expected(tmp_path):
+    wanted = expectations(
+        tmp_path,
+        "cutting_load.largest_Y = {max = 40}",
+        "cutting_load.settled = true",
+        "cutting_load.rounds = 3",
+    )
+    run = {"cutting_load": {"largest_Y": 41.5, "settled": True, "rounds": 3}}
+    (missed,) = misses(wanted, {**PART, **run})
+    assert (missed.key, missed.got, missed.off_by) == ("cutting_load.largest_Y", "41.5", "+1.5")
+    without = misses(wanted, PART)
+    assert [one.got for one in without] == ["not measured"] * 3

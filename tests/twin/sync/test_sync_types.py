@@ -137,7 +137,7 @@ def test_a_slave_out_of_its_window_ends_the_run_at_that_very_tick(
     free = recorded(tmp_path, follow=True)
     window = 0.5 * (lag(300, KV_WORK) + lag(600, KV_WORK))
     beyond = int(np.argmax(np.abs(np.nan_to_num(free.sync_error_arcsec)) > window))
-    monkeypatch.setattr("twin.session.CHUNK", size)
+    monkeypatch.setattr("twin.course.CHUNK", size)
     text = JOB.format(parameters=f'"201#7" = 1\n"9006" = {window}', k_ff=K_FF, kv_tool=100.0, kind="servo")
     (tmp_path / "job.toml").write_text(text, encoding="utf-8")
     job = read_job(tmp_path)

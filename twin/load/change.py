@@ -1,0 +1,65 @@
+"""What forces change of a motion, as the part's surface sees it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutting.motion import CutterMotion
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+STILL = 1e-6
+"""[rad per sample] below which a tool does not turn"""
+UM = 1e3
+
+
+def change_um(
+    before: Sequence[CutterMotion],
+    after: Sequence[CutterMotion],
+    ticks: Ints,
+    *,
+    radius: float,
+    tick_s: float,
+) -> tuple[Floats, Ints]:
+    """(m, 4) how the tool's place (3,) and the stock's surface about its axis have changed [µm], and (m,) in
+    which of the `ticks`: those that both runs have.
+
+    Compared where the edges stand alike: an edge that comes late meets the metal where that has gone on to.
+    """
+    changes, when = [np.zeros((0, 4))], [np.zeros(0, np.int64)]
+    for old, new in zip(before, after, strict=False):
+        before_ticks, after_ticks = (np.rint(m.time_s / tick_s).astype(np.int64) - 1 for m in (old, new))
+        common = np.intersect1d(np.intersect1d(before_ticks, after_ticks), ticks)
+        a, b = np.searchsorted(before_ticks, common), np.searchsorted(after_ticks, common)
+        places = [_places(motion, radius) for motion in (old, new)]
+        change = places[1][b] - places[0][a]
+        rate = np.gradient(places[1], axis=0)[b]
+        turned, turning = new.tool_angle[b] - old.tool_angle[a], np.gradient(new.tool_angle)[b]
+        late = np.divide(turned, turning, out=np.zeros(len(b)), where=np.abs(turning) > STILL)
+        changes.append((change - late[:, None] * rate) * UM)
+        when.append(common)
+    return np.concatenate(changes), np.concatenate(when)
+
+
+def bound_um(change: Floats) -> float:
+    """How far at most the part's surface has moved in a change (m, 4) [µm]: by the tool's way and the stock's
+    turn together."""
+    moved = np.linalg.norm(change[:, :3], axis=1) + np.abs(change[:, 3])
+    return float(moved.max(initial=0.0))
+
+
+def dominant_hz(change: Floats, ticks: Ints, tick_s: float) -> float:
+    """Frequency [Hz] with the largest amplitude in a change (m, 4); none while nothing is cut."""
+    if len(ticks) < 2:
+        return 0.0
+    whole = np.zeros((int(ticks[-1] - ticks[0]) + 1, change.shape[1]))
+    whole[ticks - ticks[0]] = change
+    power = (np.abs(np.fft.rfft(whole, axis=0)[1:]) ** 2).sum(axis=1)
+    return float(np.fft.rfftfreq(len(whole), tick_s)[1 + int(np.argmax(power))])
+
+
+def _places(motion: CutterMotion, radius: float) -> Floats:
+    """(n, 4) tool centre and way of the stock's surface [mm]."""
+    return np.column_stack([motion.centre, radius * motion.work_angle])
