@@ -39,6 +39,9 @@ from twin.probing.probe import Probe
 
 T = TypeVar("T")
 
+LEAST = 0.1
+"""[mm] by which a centre is wider than its hole, and the hole than a bore"""
+
 TOOLS: Mapping[str, type] = {
     "hob": Hob,
     "polygon_head": PolygonHead,
@@ -208,11 +211,11 @@ class _Reader:
             "centre_diameter_mm": tailstock.centre_diameter_mm,
         }
         for (inner, small), (outer, large) in pairwise(sizes.items()):
-            if small >= large:
+            if small + LEAST > large:
                 self._fail(
                     (*path, outer),
                     f"setup.tailstock: {outer} {large:g} is not above {inner} {small:g}",
-                    f"above {small:g}",
+                    f"{small + LEAST:g} or more",
                 )
         if sizes["hole_diameter_mm"] >= face:
             self._fail(

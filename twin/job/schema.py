@@ -22,6 +22,8 @@ from twin.probing.probe import Probe
 
 MODELS = Path(models.__file__).parent
 Positive = Annotated[float, Meta(gt=0)]
+Size = Annotated[float, Meta(ge=0.1, le=5000.0)]
+"""of a body of the machine"""
 NotNegative = Annotated[float, Meta(ge=0)]
 Tool = Hob | PolygonHead | DiscWheel
 
@@ -95,16 +97,16 @@ class Reference:
 class Tailstock:
     """`[setup] tailstock`: a live centre in the front face, on a quill"""
 
-    hole_diameter_mm: Positive | None = None
+    hole_diameter_mm: Size | None = None
     """where the cone enters the front face; left out = 8, or 2 more than the bore"""
     point_angle_deg: Annotated[float, Meta(ge=20, le=120)] = 60.0
     """of the whole cone"""
-    centre_diameter_mm: Positive = 30.0
+    centre_diameter_mm: Size = 30.0
     """behind the cone"""
-    centre_length_mm: Positive = 40.0
+    centre_length_mm: Size = 40.0
     """from the cone's end to the quill"""
-    quill_diameter_mm: Positive = 60.0
-    quill_length_mm: Positive = 150.0
+    quill_diameter_mm: Size = 60.0
+    quill_length_mm: Size = 150.0
     """up to the barrel, which is twice as thick"""
 
     def hole(self, bore_mm: float) -> float:

@@ -165,7 +165,7 @@ class _Shapes:
 
     def _names(self, pair: _Pair) -> tuple[str, str]:
         moving, fixed = (
-            self._model.body(self._model.geom_bodyid[g]).name.replace("_", " ")
+            self._model.body(self._model.geom_bodyid[g]).name.replace("_", " ") or "a body without a name"
             for g in (pair.moving, pair.fixed)
         )
         return moving, fixed
