@@ -1,15 +1,18 @@
 """Cutters that meet the stock at rapid, or with a spindle at rest: which block, how deep; what is none."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from controller.language.source import load_program
 from controller.tables.alarms import Alarm
 from twin.clashes.clashes import clashes
+from twin.cutting.blank import Blank
 from twin.job import read_job
 from twin.presets import cutters_of, settings_of
-from twin.session import run_program
+from twin.session import Session, run_program
 from twin.setup import make_ready
 
 JOB = """[machine]
@@ -39,8 +42,8 @@ IN_SYNC = f"{BESIDE}G81 T20 L1\nS600\n"
 CUT = "G99 G01 X35. F4.\nG01 Z-26. F4.\n"
 
 
-def said(folder: Path, program: str, job: str = JOB) -> tuple[Alarm, ...]:
-    """What a run of the program on ideal axes comes to."""
+def ran(folder: Path, program: str, job: str = JOB) -> tuple[Blank, Session]:
+    """A run of the program on ideal axes."""
     (folder / "job.toml").write_text(job, encoding="utf-8")
     (folder / "program.nc").write_text(f"O1\n{program}M30\n", encoding="utf-8")
     read = read_job(folder)
@@ -49,7 +52,12 @@ def said(folder: Path, program: str, job: str = JOB) -> tuple[Alarm, ...]:
         load_program(read.program), settings_of(read, cutters), make_ready(read, cutters), ideal=True
     )
     assert session.alarms == ()
-    return clashes(read.work.blank(), session)
+    return read.work.blank(), session
+
+
+def said(folder: Path, program: str, job: str = JOB) -> tuple[Alarm, ...]:
+    """What comes of it."""
+    return clashes(*ran(folder, program, job))
 
 
 def line_of(program: str, block: str) -> int:
@@ -60,12 +68,18 @@ def test_rapid_into_the_blank_is_named_with_its_block_and_depth(tmp_path: Path) 
     """The hob's tips stand 2 mm under Ø 44 when X is 40; they meet the front face where their circle of 35 mm
     is 2 mm high: 11.66 mm ahead of the centre."""
     program = f"{IN_SYNC}G00 X40.\nG00 Z-4.\nG00 X50.\nS0\nG80\n"
-    (alarm,) = said(tmp_path, program)
+    blank, session = ran(tmp_path, program)
+    (alarm,) = clashes(blank, session)
     assert alarm.number == "HT9032"
     assert alarm.span
     assert alarm.span.line == line_of(program, "G00 Z-4.")
     depth = float(alarm.found.split(" mm deep")[0].split()[-1])
     assert 1.7 < depth <= 2.0
+    time = float(alarm.found.removesuffix(" s").split()[-1])
+    _, motion = session.motions[0]
+    z = float(np.interp(time, motion.time_s, motion.centre[:, 2]))
+    # one of twelve gashes comes by every 8 ms, which at rapid are 3 mm
+    assert 11.4 - 6.0 < z < 11.66
 
 
 def test_rapid_through_the_gaps_that_were_cut_is_none(tmp_path: Path) -> None:
@@ -103,6 +117,16 @@ def test_polygon_head_at_rest_at_the_turning_work(tmp_path: Path) -> None:
     program = f"{BESIDE}M03 S100\nG98 G01 X40. F2000.\nG01 Z-4. F300.\nG01 X50. F2000.\nM05\n"
     alarms = said(tmp_path, program, job)
     assert [alarm.number for alarm in alarms] == ["HT9033"]
+
+
+def test_hob_that_turns_in_the_gear_box_at_work_that_stands(tmp_path: Path) -> None:
+    """As if the work spindle were stuck: the motion that was recorded, but for the turn of the work."""
+    program = f"{IN_SYNC}{CUT}G00 X50.\nS0\nG80\n"
+    blank, session = ran(tmp_path, program)
+    ((cutter, motion),) = session.motions
+    stuck = replace(motion, work_angle=np.zeros(len(motion.time_s)))
+    (alarm,) = clashes(blank, replace(session, motions=((cutter, stuck),)))
+    assert (alarm.number, alarm.span and alarm.span.line) == ("HT9034", line_of(program, "G01 Z-26. F4."))
 
 
 @pytest.mark.parametrize("radial", ["X46.", "X44.2"])
