@@ -154,7 +154,7 @@ HT9031 | TOUCH PROBE CRASH | a path on which the stylus meets a reference band a
 HT9032 | RAPID INTO THE STOCK | G00 to clear of the metal that stands, then a feed
 HT9033 | CUTTING WITH THE TOOL AT REST | S before the block
 HT9034 | HOBBING WITH THE WORK AT REST | T, L, P and Q with which the work turns
-HT9040 | UNSTABLE CUT | less feed or depth, another speed, or stiffer mounts
+HT9040 | UNSTABLE CUT | less feed or depth, another speed, stiffer mounts or a stronger tool drive
 """
 
 _WARNINGS = """

@@ -336,10 +336,12 @@ def _unstable(result: _Result, session: Session) -> Alarm:
     recording = session.recording
     rounds = ", ".join(f"{one:.3g}" for one in result.moved_um)
     block = recording.blocks[int(recording.block[-1])]
+    acted = result.state.acted
+    torque = float(np.abs(acted.whole().axes[:, acted.spindle]).max(initial=0.0))
     return Alarm(
         number="HT9040",
         found=f"up to {recording.time_s[-1]:.3f} s the part's surface still moved by "
         f"{result.moved_um[-1]:.3g} µm in round {result.rounds}, most at {result.frequency_hz:.4g} Hz "
-        f"(by round: {rounds} µm)",
+        f"(by round: {rounds} µm), with up to {torque:.3g} N m on the tool",
         span=Span(file=block.file, line=block.line),
     )
