@@ -23,7 +23,7 @@ from twin.cutting.refine import refine
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.regular import Regular, regular_cut
 from twin.cutting.stock import Remains, subtract
-from twin.cutting.strokes import Strokes, find_strokes
+from twin.cutting.strokes import Strokes, find_strokes, ridges
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -198,6 +198,7 @@ def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: 
     tubes = [tube for strokes in found for tube in strokes.tubes]
     times = [time for strokes in found for time in strokes.times]
     remains = subtract(blank, *tubes)
+    met = ridges(found, remains)
     return CutResult(
         remains=remains,
         method="strokes of a wheel (rays in transverse planes)",
@@ -205,10 +206,14 @@ def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: 
         passes=len(tubes),
         pairs=sum(len(tube.vertices) for tube in tubes),
         face_time_s=face_moments(remains.origin, [tube.faces for tube in tubes], times),
-        checked=sum(len(strokes.vertices.distance) for strokes in found),
-        largest_error_um=max(strokes.vertices.largest_um for strokes in found),
+        checked=sum(len(errors.distance) for errors in (met, *(strokes.vertices for strokes in found))),
+        largest_error_um=max(met.largest_um, *(strokes.vertices.largest_um for strokes in found)),
         facet_error_um=max(strokes.facets.largest_um for strokes in found),
-        notes=(*(note for one in found for note in coarse(one.vertices, one.facets)), *_severed(remains)),
+        notes=(
+            *(note for one in found for note in coarse(one.vertices, one.facets)),
+            *coarse(met, Errors(np.zeros((0, 3)), np.zeros(0))),
+            *_severed(remains),
+        ),
     )
 
 

@@ -66,7 +66,7 @@ def _between(ground: Ground, mesh: Mesh) -> float:
 def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
     """The mesh with facets within `limit` [mm] of the cut."""
     asked = np.arange(len(mesh.faces))
-    aim, first = limit / INWARDS, 0
+    aim, first, before = limit / INWARDS, 0, np.inf
     for _ in range(ROUNDS):
         faces = mesh.faces[asked]
         faces = faces[mesh.cut_in(faces)]
@@ -79,8 +79,10 @@ def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
         calm = ~far[sides.of_face].any(axis=1)
         far[_bumpy(ground, mesh, faces[calm], Sides(sides.ends, sides.of_face[calm]), worst, aim=aim)] = True
         far &= lengths(mesh.vertices, sides.ends) > SHORTEST
-        if not far.any():
+        # what does not settle, as corners of one bite between its own faces, is left and told
+        if not 0 < far.sum() < before:
             break
+        before = far.sum()
         first = len(mesh.vertices)
         mesh, asked = _split(ground, mesh, blank, sides.ends[far], worst.of(far))
     return mesh

@@ -108,11 +108,13 @@ def worst_of(ground: Ground, mesh: Mesh, ends: Ints, rows: Ints, aim: float) -> 
     # place, depth and slope of the tangents on the left and on the right
     place = np.broadcast_to([0.0, 1.0], at_ends.shape).copy()
     depth, slope = np.zeros_like(at_ends), at_ends.copy()
+    # over a ridge of metal the field falls and rises again, over a corner it rises and falls
+    hollow = at_ends[:, 0] > at_ends[:, 1]
     ridge, height = np.full(len(rows), 0.5), found.depth.copy()
     left = np.arange(len(rows))
     for _ in range(TANGENTS):
         rises = np.einsum("nx,nx->n", found.gradient, way[left])
-        side = left, (rises > 0).astype(np.int64)
+        side = left, ((rises > 0) != hollow[left]).astype(np.int64)
         place[side], depth[side], slope[side] = ridge[left], found.depth, rises
         worst.bites[rows[left], side[1]] = found.bite
         where, low = _between(place[left], depth[left], slope[left])

@@ -22,6 +22,7 @@ from twin.cutting.dual import Surface
 from twin.cutting.engagement import StockCylinder, turning_runs
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passing_wheel import PassingWheel, standing_wheel
+from twin.cutting.stock import Remains
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -60,6 +61,30 @@ class Strokes:
     """of random vertices from the envelope of their stroke"""
     facets: Errors
     """of random middles of facets"""
+    wheels: tuple[PassingWheel, ...]
+    """on their strokes"""
+
+
+def ridges(strokes: list[Strokes], remains: Remains) -> Errors:
+    """How far random vertices stand off the cut where two strokes meet: there the boolean made them, of
+    their facets alone."""
+    wheels = [wheel for one in strokes for wheel in one.wheels]
+    first = np.cumsum([0, *(len(tube.faces) for one in strokes for tube in one.tubes)])
+    made = remains.origin >= 0
+    tube = np.repeat(np.searchsorted(first, remains.origin[made], side="right") - 1, 3)
+    corner = remains.faces[made].ravel()
+    low, high = np.full(len(remains.vertices), len(wheels)), np.full(len(remains.vertices), -1)
+    np.minimum.at(low, corner, tube)
+    np.maximum.at(high, corner, tube)
+    rows = np.flatnonzero(low < high)
+    rows = np.random.default_rng(0).choice(rows, min(CHECKED, len(rows)), replace=False)
+    points = remains.vertices[rows].astype(np.float64)
+    depth = np.full(len(rows), -np.inf)
+    for number, wheel in enumerate(wheels):
+        near = np.flatnonzero((low[rows] == number) | (high[rows] == number))
+        if len(near):
+            depth[near] = np.maximum(depth[near], wheel.held(points[near]))
+    return Errors(points, np.abs(depth))
 
 
 def find_strokes(blank: Blank, cutter: Cutter, motion: CutterMotion, cell: float) -> Strokes | None:
@@ -95,7 +120,13 @@ def find_strokes(blank: Blank, cutter: Cutter, motion: CutterMotion, cell: float
             inside = np.flatnonzero(blank.contains(points))
             chosen = points[rng.choice(inside, min(share, len(inside)), replace=False)]
             errors.append(Errors(chosen, np.abs(wheel.held(chosen))))
-    return Strokes(tubes=tuple(tubes), times=tuple(times), vertices=_joined(vertices), facets=_joined(facets))
+    return Strokes(
+        tubes=tuple(tubes),
+        times=tuple(times),
+        vertices=_joined(vertices),
+        facets=_joined(facets),
+        wheels=tuple(wheels),
+    )
 
 
 def _joined(errors: list[Errors]) -> Errors:

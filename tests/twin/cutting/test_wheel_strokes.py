@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutting.blank import Blank
 from twin.cutting.cut import cut
 from twin.cutting.motion import RigidTransform
@@ -132,3 +133,52 @@ def test_a_stroke_that_ends_in_the_gap_is_none_along_it(synthetic):
         wheel, teeth=30, module=3.0, tip_x=law.root_diameter / 2, z=(30.0, -2.0), gaps=2
     )
     assert find_strokes(blank, cutter, motion, 0.5) is None
+
+
+FLOOR, TIP, GAPS = 17.5, 22.0, 55
+WHEEL = DiscWheel(outside_diameter_mm=60.0, normal_module_mm=2.0, tip_radius_factor=0.0)
+
+
+def overlapping(synthetic, helix, cell):
+    """Three gaps so close to each other that the wheel's flanks meet below the blank's outside."""
+    tool = synthetic.grinding(
+        WHEEL, teeth=GAPS, module=2.0 * 20 / GAPS, helix_deg=helix, tip_x=FLOOR, z=(16.0, -20.0), gaps=3
+    )
+    blank = Blank(diameter_mm=2 * TIP, length_mm=3.0, bore_mm=20.0)
+    return tool, cut(blank, (tool,), cell_mm=cell)
+
+
+def test_between_two_strokes_stands_the_ridge_of_both_profiles(synthetic):
+    """Spur gaps are the wheel's own profile: two of them meet on the plane half way between."""
+    _, found = overlapping(synthetic, 0.0, 0.4)
+    assert found.method.startswith("strokes")
+    v = found.remains.vertices.astype(float)
+    pitch = 2 * math.pi / GAPS
+    r, angle, z = np.hypot(v[:, 0], v[:, 1]), np.arctan2(v[:, 1], v[:, 0]), v[:, 2]
+    # the work turns by a pitch from stroke to stroke: the gaps stand at 0, −1 and −2 of it
+    off = np.full(len(v), -np.inf)
+    for gap in range(3):
+        x, y = r * np.cos(angle + gap * pitch), np.abs(r * np.sin(angle + gap * pitch))
+        half = math.pi / 2.0 + (x - FLOOR - 2.5) * math.tan(math.radians(20.0))
+        depth = np.minimum(x - FLOOR, (half - y) * math.cos(math.radians(20.0)))
+        off = np.maximum(off, np.where(x > 0, depth, -np.inf))
+    inside = (z > -2.999) & (z < -0.001) & (r < TIP - 1e-3) & (r > 10.1) & (off > -1.0)
+    assert inside.sum() > 300
+    # 7.6 nm of the file's grid, and that again across the corner
+    assert np.abs(off[inside]).max() < 2e-5
+    ridge = inside & (np.abs(angle + 0.5 * pitch) < 1e-4)
+    assert ridge.sum() > 5
+    half = math.radians(20.0)
+    x = (math.pi / 2.0 - (FLOOR + 2.5) * math.tan(half)) / (math.tan(pitch / 2) - math.tan(half))
+    np.testing.assert_allclose(r[ridge], x / math.cos(pitch / 2), atol=2e-5)
+
+
+def test_what_facets_cost_on_ridges_between_helical_strokes_is_told(synthetic):
+    """The boolean makes those ridges of facets: their vertices are off the cut as the facets are."""
+    _, found = overlapping(synthetic, 15.0, 0.8)
+    assert found.method.startswith("strokes")
+    assert 0.1 < found.largest_error_um < 1.0
+    assert any("checked points of the cut stand up to" in note for note in found.notes)
+    _, fine = overlapping(synthetic, 15.0, 0.3)
+    # errors of facets go with the square of the cell
+    assert fine.largest_error_um < 0.3 * found.largest_error_um
