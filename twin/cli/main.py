@@ -124,8 +124,6 @@ def _new(options: argparse.Namespace) -> ExitCode:
 
 
 def _inspect(options: argparse.Namespace) -> ExitCode:
-    # its matrices are small: threads of the algebra library only stand in the way of ours
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from twin.inspection.beside import Beside  # noqa: PLC0415
     from twin.inspection.mesh_files import read_mesh  # noqa: PLC0415
 
