@@ -26,7 +26,6 @@ from twin.job.schema import (
 from twin.job.tables import Tables
 from twin.job.tools import dressed, faults_of, physics_of, probe_of, tools_of
 
-
 NOMINALS: Mapping[str, type] = {"gear": GearNominal, "polygon": PolygonNominal}
 TABLES = (
     "machine",
