@@ -6,8 +6,8 @@ its thickness exactly, however thin it is. Metal that hangs over an undercut goe
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,31 +19,21 @@ from twin.cutting.field import DepthField
 from twin.cutting.motion import CutterMotion
 from twin.cutting.pairs import batches, in_parallel
 from twin.cutting.passes import REACH
-from twin.errors import InputError
+from twin.load.ray_ends import SLACK, cut_at
+from twin.load.stock import Stock
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Tools = tuple[tuple[Cutter, CutterMotion], ...]
 
-RAYS_PER_PITCH = 18.0
-RAYS = 60_000
-"""that a count has at most where the job names no resolution; it may have ten times as many"""
 PASSES = 12
 """looked at together, at most"""
 FAR = 1e4
 """[mm] longer than any ray"""
 THINNEST = 1e-7
 """[mm] of metal that counts as some"""
-STEPS = 20
-"""towards the end of a ray, at most"""
-HALVED = 3
-"""steps after which the bound that has stood is taken to lie nearer"""
-CLOSE = 1e-5
-"""[mm] of depth at which the end of a ray counts as found"""
 ROUNDING = 1e-9
 """[rad]"""
-SLACK = 0.02
-"""[mm] added to the way of the stock until it meets an edge"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,59 +69,6 @@ class Removal:
         return 2.0 * mean[chip]
 
 
-@dataclass(slots=True)
-class Stock:
-    """What stands of the blank: rays at angles and heights of the part frame, angle by angle."""
-
-    cos: Floats
-    """(m,) of the angle"""
-    sin: Floats
-    z: Floats
-    """(m,) [mm]"""
-    end: Floats
-    """(m,) how far the metal reaches from the axis [mm]"""
-    inner: float
-    """radius of the bore [mm]"""
-    turn: float
-    """angle between neighbours [rad]"""
-    rise: float
-    """height between neighbours [mm]"""
-    step: float
-    """distance of the rays on the blank's surface, as asked for [mm]"""
-
-    @classmethod
-    def of(cls, blank: Blank, cutters: Iterable[Cutter], resolution_mm: float | None = None) -> "Stock":
-        """A whole blank; `resolution_mm` is the distance of the rays on its surface.
-
-        Raises InputError for a resolution that would need too much memory or time.
-        """
-        step = _step(blank, cutters, resolution_mm)
-        around = math.ceil(2.0 * math.pi * blank.radius / step)
-        along = math.ceil(blank.length_mm / step)
-        low, high = blank.z_range
-        angle = 2.0 * math.pi * (np.arange(around) + 0.5) / around
-        z = low + (high - low) * (np.arange(along) + 0.5) / along
-        turned, height = (grid.reshape(-1) for grid in np.meshgrid(angle, z, indexing="ij"))
-        return cls(
-            cos=np.cos(turned),
-            sin=np.sin(turned),
-            z=height,
-            end=blank.outer_radius(height),
-            inner=blank.bore_mm / 2.0,
-            turn=2.0 * math.pi / around,
-            rise=(high - low) / along,
-            step=step,
-        )
-
-    def copy(self) -> "Stock":
-        """The same metal once more, to be cut by itself."""
-        return replace(self, end=self.end.copy())
-
-    def points(self, ray: Ints, radius: Floats) -> Floats:
-        """(n, 3) at some radii of rays (n,)."""
-        return np.column_stack([radius * self.cos[ray], radius * self.sin[ray], self.z[ray]])
-
-
 def removal(
     blank: Blank,
     tools: Tools,
@@ -165,28 +102,13 @@ def cut_off(
     return Removal(**{name: np.concatenate(parts[name]) for name in names}, resolution_mm=stock.step)
 
 
-def _step(blank: Blank, cutters: Iterable[Cutter], wanted: float | None) -> float:
-    """The resolution asked for, or an 18th of the tooth pitch or of the edge's width [mm]."""
-    finest = math.sqrt(2.0 * math.pi * blank.radius * blank.length_mm / RAYS)
-    if wanted is None:
-        wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c in cutters]
-        return max(min([blank.radius, *wide]) / RAYS_PER_PITCH, finest)
-    least = finest / math.sqrt(10.0)
-    if wanted < least:
-        raise InputError(
-            f"loads on rays {wanted:g} mm apart would need more memory than allowed",
-            remedy=f"valid: {math.ceil(least * 1e3) / 1e3:g} or more",
-        )
-    return wanted
-
-
 def _cut(
     field: DepthField, motion: CutterMotion, rays: Stock, passes: Ints, stretch: int
 ) -> dict[str, NDArray]:
     """What some passes that follow one another take off the rays; the rays are cut."""
     ray, index = _met(field, motion, rays, passes)
     parts = batches(np.arange(len(ray) + 1))
-    ends = in_parallel(lambda part: _end(field, rays, ray[part], index[part]), parts)
+    ends = in_parallel(lambda part: cut_at(field, rays, ray[part], index[part]), parts)
     end = np.concatenate([np.zeros(0), *ends])
     # on each ray only what stands when its pass comes: the shortest that earlier passes have left
     order = np.lexsort((index, ray))
@@ -248,63 +170,6 @@ def _at(motion: CutterMotion, values: Floats, sample: Floats) -> Floats:
     cell = np.clip(sample.astype(np.int64), 0, len(motion.time_s) - 2)
     share = (sample - cell).reshape(-1, *[1] * (values.ndim - 1))
     return values[cell] + share * (values[cell + 1] - values[cell])
-
-
-def _end(field: DepthField, rays: Stock, ray: Ints, index: Ints) -> Floats:
-    """(n,) radii at which passes cut rays off; inf where they do not."""
-    out = np.full(len(ray), np.inf)
-    high = rays.end[ray]
-    meeting = field.evaluate(rays.points(ray, high), index)
-    cut = np.flatnonzero(meeting.depth > 0)
-    ray, index, high, above = ray[cut], index[cut], high[cut], meeting.depth[cut]
-    low = np.maximum(high - 2.0 * (field.cutter.radius - meeting.rho[cut]) - SLACK, rays.inner)
-    below = field.evaluate(rays.points(ray, low), index).depth
-    through = below >= 0  # the edge comes from below, or through to the bore
-    below = np.where(through, -above, below)
-    out[cut] = np.where(through, rays.inner, _zero(field, rays, (ray, index), (low, below), (high, above)))
-    return out
-
-
-def _zero(
-    field: DepthField,
-    rays: Stock,
-    pairs: tuple[Ints, Ints],
-    outside: tuple[Floats, Floats],
-    inside: tuple[Floats, Floats],
-) -> Floats:
-    """(n,) radii between others, (n,) each with their depths below and above 0, where the depth is zero.
-
-    Secants between the last two, which start from inside: depth grows no faster than the radius, so nothing
-    is passed over. A secant that leaves the bounds gives way to false position between them.
-    """
-    (low, below), (high, above) = (
-        tuple(value.copy() for value in outside),
-        tuple(value.copy() for value in inside),
-    )
-    before, depth_before = high.copy(), above.copy()
-    at = np.maximum(high - above, low)
-    rows = np.arange(len(at))
-    for step in range(STEPS):
-        depth = field.evaluate(rays.points(pairs[0][rows], at[rows]), pairs[1][rows]).depth
-        cuts = depth > 0
-        ins, outs = rows[cuts], rows[~cuts]
-        high[ins], above[ins] = at[ins], depth[cuts]
-        low[outs], below[outs] = at[outs], depth[~cuts]
-        if step % HALVED == HALVED - 1:
-            below[ins] *= 0.5
-            above[outs] *= 0.5
-        open_ = np.abs(depth) > CLOSE
-        rows, depth = rows[open_], depth[open_]
-        if not len(rows):
-            break
-        x, lower, upper = at[rows], low[rows], high[rows]
-        change = depth - depth_before[rows]
-        secant = x - depth * (x - before[rows]) / np.where(change == 0.0, 1.0, change)
-        false = upper - above[rows] / (above[rows] - below[rows]) * (upper - lower)
-        fits = (change != 0.0) & (secant > lower) & (secant < upper)
-        before[rows], depth_before[rows] = x, depth
-        at[rows] = np.where(fits, secant, false)
-    return at
 
 
 def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:

@@ -25,7 +25,8 @@ from twin.load.agreement import Agreement
 from twin.load.change import bound_um, change_um, dominant_hz
 from twin.load.forces import Clock, CuttingLoad, cutting_load, joined, no_load, summed
 from twin.load.material import Material, material_of
-from twin.load.removal import Stock, cut_off
+from twin.load.removal import cut_off
+from twin.load.stock import Stock
 from twin.load.windows import SHORTEST, Window, windows
 from twin.machine.pressing import REACH
 from twin.session import Session, motions_on, session_of, ticks_of
