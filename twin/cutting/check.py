@@ -1,6 +1,7 @@
 """What a run says of its own cut surface: held against all passes, and searched for what the cells missed."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from twin.cutting.topology import CORNERS
 from twin.errors import PartError
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 CHECKED = 1000
@@ -56,14 +58,30 @@ def check(sweep: Sweep, surface: Surface, blank: Blank) -> tuple[Errors, Errors]
     have made.
     """
     rng = np.random.default_rng(0)
-    share = rng.dirichlet(np.ones(3), len(surface.faces))
-    points = np.einsum("fc,fcx->fx", share, surface.vertices[surface.faces])
-    return _off(sweep, surface.vertices, blank, rng), _off(sweep, points, blank, rng)
+
+    def amid(faces: Ints) -> Floats:
+        share = rng.dirichlet(np.ones(3), len(faces))
+        return np.einsum("fc,fcx->fx", share, surface.vertices[surface.faces[faces]])
+
+    vertices = _some(len(surface.vertices), lambda rows: surface.vertices[rows], blank, rng)
+    facets = _some(len(surface.faces), amid, blank, rng)
+    return _off(sweep, vertices), _off(sweep, facets)
 
 
-def _off(sweep: Sweep, points: Floats, blank: Blank, rng: np.random.Generator) -> Errors:
-    rows = np.flatnonzero(blank.contains(points))
-    chosen = points[rng.choice(rows, min(CHECKED // 2, len(rows)), replace=False) if len(rows) else rows]
+def _some(count: int, place: Callable[[Ints], Floats], blank: Blank, rng: np.random.Generator) -> Floats:
+    """(n, 3) of `count` places, drawn at random, those in the blank: as many as are checked, if there are."""
+    wanted = CHECKED // 2
+    found: list[Floats] = [np.zeros((0, 3))]
+    order = rng.permutation(count)
+    for low in range(0, count, CHECKED):
+        points = place(order[low : low + CHECKED])
+        found.append(points[blank.contains(points)])
+        if sum(map(len, found)) >= wanted:
+            break
+    return np.concatenate(found)[:wanted]
+
+
+def _off(sweep: Sweep, chosen: Floats) -> Errors:
     depth = sweep.unculled(chosen)
     if not np.isfinite(depth).all():
         raise PartError("the cut surface has points that no pass can have made")

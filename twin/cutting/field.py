@@ -206,9 +206,9 @@ class DepthField:
         x = local[0] * state[0] - local[1] * state[1] - state[2]
         y = local[0] * state[1] + local[1] * state[0] - state[3]
         z = local[2] - state[4]
-        a, b, _ = self._basis @ np.stack([x, y, z])
+        a, b = self._basis[:2] @ np.stack([x, y, z])
         reach = self.cutter.radius + radius + self.passes.travel[rows] + self._sway
-        found = np.flatnonzero(np.hypot(a, b) < reach)
+        found = np.flatnonzero(a * a + b * b < reach * reach)
         return found if among is None else among[found]
 
     def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:
