@@ -7,11 +7,12 @@ from twin.benchmark.cases import CASES, Case, gear_case
 from twin.benchmark.naive import boolean_seconds, naive_seconds
 from twin.cutting.cut import CutResult, cut
 from twin.errors import InputError
+from twin.progress import Reporter, Silent
 
 Figures = dict[str, str | int | float]
 
 
-def kernel_figures(name: str) -> Figures:
+def kernel_figures(name: str, reporter: Reporter | None = None) -> Figures:
     """One case: seconds of the kernel, of all tooth passes one by one, and of one boolean of finished gaps.
 
     Raises InputError for a case that is none.
@@ -19,12 +20,17 @@ def kernel_figures(name: str) -> Figures:
     if name not in CASES:
         raise InputError(f"no case {name!r}", remedy=f"valid: {', '.join(CASES)}")
     case = CASES[name]()
+    tell = reporter or Silent()
+    tell.stage("the kernel")
     result, seconds = _timed(case)
     peak = _peak_mib()
+    tell.stage("every tooth pass of 2 turns by itself")
+    naive = naive_seconds(case, tell.share)
+    tell.stage("one boolean of 20 lofts")
     return {
         "case": name,
         "kernel_s": seconds,
-        "naive_s": naive_seconds(case),
+        "naive_s": naive,
         "naive_is": "extrapolated from 2 turns",
         "boolean_s": boolean_seconds(),
         "triangles": len(result.remains.faces),

@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Callable
 
 import manifold3d
 import numpy as np
@@ -28,7 +29,7 @@ LOFT = (60, 220)
 """Points around and along each of the finished gaps: 26 400 triangles"""
 
 
-def naive_seconds(case: Case) -> float:
+def naive_seconds(case: Case, share: Callable[[float], None] = lambda _done: None) -> float:
     """Seconds to subtract every tooth pass, from TURNS steady turns of the work."""
     motion, blank = case.motion, case.blank
     field = DepthField(case.cutter, motion, blank.radius, blank.z_range)
@@ -40,7 +41,9 @@ def naive_seconds(case: Case) -> float:
     start = time.perf_counter()
     left = blank_solid(blank)
     sweeps: list[manifold3d.Manifold] = []
-    for index in np.flatnonzero(inside):
+    indices = np.flatnonzero(inside)
+    for number, index in enumerate(indices):
+        share(number / len(indices))
         for tooth in teeth:
             swept = _sweep(case, field, int(index), int(tooth))
             if swept is not None:

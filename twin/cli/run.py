@@ -2,14 +2,13 @@
 
 import argparse
 import math
-import sys
 from pathlib import Path
 
 from twin.cli.given import events_of_options
 from twin.errors import ExitCode, InputError
 from twin.job import read_job
 from twin.outcome import Options, Outcome
-from twin.progress import Bar, Lines, Reporter, Silent
+from twin.progress import shown
 from twin.run import run_job
 from twin.summary import lines
 
@@ -31,12 +30,8 @@ def run_command(options: argparse.Namespace) -> ExitCode:
         chips=options.chips,
         events=events_of_options(options),
     )
-    if options.quiet or not sys.stderr.isatty():
-        reporter: Reporter = Silent() if options.quiet else Lines()
+    with shown(quiet=options.quiet) as reporter:
         outcome = run_job(job, out, settings, reporter)
-    else:
-        with Bar() as bar:
-            outcome = run_job(job, out, settings, bar)
     for line in lines(outcome):
         print(line)
     print(f"report: {out / 'report.html'}")

@@ -52,7 +52,7 @@ def _inside(vertices, faces, points):
 def test_a_line_of_json_with_all_figures(capsys, monkeypatch):
     small = gear_case(module=1.0, teeth=12, width=0.6, hob_diameter=30.0)
     monkeypatch.setitem(CASES, "small", lambda: small)
-    monkeypatch.setattr(kernel, "naive_seconds", lambda case: 12.5 if case is small else 0.0)
+    monkeypatch.setattr(kernel, "naive_seconds", lambda case, _share: 12.5 if case is small else 0.0)
     monkeypatch.setattr(kernel, "boolean_seconds", lambda: 0.5)
     assert main(["bench", "kernel", "--case", "small"]) == 0
     figures = json.loads(capsys.readouterr().out)
