@@ -7,7 +7,7 @@ so that everybody downstream sees them.
 
 # pyright: reportAttributeAccessIssue=false
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import mujoco  # its bindings are compiled and carry no types
@@ -81,6 +81,19 @@ class Chain:
                 rotation = rotation @ rotation_about(joint.axis, np.radians(value))
                 position = position + anchor - rotation @ joint.anchor
         return position, np.broadcast_to(rotation, (len(axes), 3, 3))
+
+    def place(self, axes: Floats) -> Floats:
+        """The position alone, (n, 3): what turns about the last link's own origin does not matter there."""
+        links = list(self.links)
+        while links:
+            last = links.pop()
+            joint = last.joint
+            if joint is not None and joint.kind is JointKind.HINGE and not joint.anchor.any():
+                last = replace(last, joint=None)
+            if last.joint is not None or last.position.any():
+                links.append(last)
+                break
+        return Chain(links=tuple(links)).pose(axes)[0]
 
     @property
     def spindle(self) -> Joint:
@@ -205,28 +218,38 @@ def cutter_motion(
     still = np.zeros((1, kinematics.axes))
     (origin,), (work,) = kinematics.work.pose(still)
     axes = actual if kinematics.creep is None else actual + time_s[:, None] * kinematics.creep
-    centre, _ = kinematics.tool.pose(axes)
+    centre = kinematics.tool.place(axes)
     _, (tool,) = kinematics.tool.pose(still)
     tool_angle = np.radians(actual[:, kinematics.tool.spindle.column])
     basis = tool.T @ work
     arbor = kinematics.arbor
-    centre = (centre - origin) @ work + _spun(tool_angle, arbor.translation) @ basis
+    centre = (centre - origin) @ work
+    if arbor.translation.any():
+        (off,) = _spun(tool_angle, arbor.translation)
+        centre = centre + off @ basis
     return CutterMotion(
         time_s=time_s,
         work_angle=np.radians(actual[:, kinematics.work.spindle.column]),
         tool_angle=tool_angle,
         centre=centre if deflection is None else centre + deflection,
         basis=basis,
-        lean=_spun(tool_angle, arbor.rotation[:, 2])[:, :2] if arbor.rotation[2, 2] != 1.0 else None,
+        lean=_spun(tool_angle, arbor.rotation[:, 2])[0][:, :2] if arbor.rotation[2, 2] != 1.0 else None,
         mount=kinematics.mount,
     )
 
 
-def _spun(angle: Floats, vector: Floats) -> Floats:
-    """(n, 3) a vector (3,), or (n, 3), turned about Z by `angle` (n,) [rad]."""
-    x, y, z = vector.T
+def _spun(angle: Floats, *vectors: Floats) -> list[Floats]:
+    """(n, 3) each: vectors (3,), or (n, 3), turned about Z by `angle` (n,) [rad]."""
     cos, sin = np.cos(angle), np.sin(angle)
-    return np.column_stack([x * cos - y * sin, x * sin + y * cos, np.broadcast_to(z, len(angle))])
+    found = []
+    for vector in vectors:
+        x, y, z = vector.T
+        turned = np.zeros((len(angle), 3))
+        turned[:, 0] = x * cos - y * sin
+        turned[:, 1] = x * sin + y * cos
+        turned[:, 2] = z
+        found.append(turned)
+    return found
 
 
 def part_frame(motion: CutterMotion) -> tuple[Floats, Floats, Floats]:
@@ -235,8 +258,11 @@ def part_frame(motion: CutterMotion) -> tuple[Floats, Floats, Floats]:
     if motion.lean is not None:
         zero, axis = _leaning(motion.lean, zero), _leaning(motion.lean, axis)
     back, mount = -motion.work_angle, motion.mount
-    centre = _spun(back, motion.centre) - mount.translation
-    axis, zero = _spun(back, axis @ motion.basis), _spun(back, zero @ motion.basis)
+    centre, axis, zero = _spun(back, motion.centre, axis @ motion.basis, zero @ motion.basis)
+    if mount.translation.any():
+        centre = centre - mount.translation
+    if (mount.rotation == np.eye(3)).all():
+        return centre, axis, zero
     return centre @ mount.rotation, axis @ mount.rotation, zero @ mount.rotation
 
 

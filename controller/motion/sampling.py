@@ -24,7 +24,7 @@ def setpoints(timeline: Timeline, time: Floats) -> Floats:
     for k, track in enumerate(timeline.tracks):
         out[:, k] = positions(track, time)
     for epoch in timeline.epochs:
-        first, last = np.searchsorted(time, (epoch.start, epoch.end), side="right")
+        first, last = _rows(epoch, time)
         if first < last:
             part = out[first:last]
             added = _shifts(epoch, part)
@@ -59,7 +59,7 @@ def geared(timeline: Timeline, time: Floats) -> tuple[Geared, ...]:
     """Which gear boxes were engaged in which of the ascending times (n,)."""
     found = []
     for epoch in timeline.epochs:
-        first, last = np.searchsorted(time, (epoch.start, epoch.end), side="right").tolist()
+        first, last = _rows(epoch, time)
         if first < last:
             gear = epoch.gear
             found.append(
@@ -75,6 +75,14 @@ def geared(timeline: Timeline, time: Floats) -> tuple[Geared, ...]:
                 )
             )
     return tuple(found)
+
+
+def _rows(epoch: Epoch, time: Floats) -> tuple[int, int]:
+    """First and one-past-last of the ascending times (n,) in which the epoch was open."""
+    if epoch.start < time[0] and time[-1] <= epoch.end:
+        return 0, len(time)
+    first, last = np.searchsorted(time, (epoch.start, epoch.end), side="right").tolist()
+    return first, last
 
 
 def marked(marks: Marks, time: Floats) -> NDArray[np.int64]:
@@ -117,7 +125,7 @@ def _piece(knot: Straight | Round, tau: Floats) -> Floats:
     if len(knot) == 3:
         position, speed, half = knot
         if not half:
-            return position + tau * speed
+            return position + tau * speed if speed else np.full(len(tau), position)
         return position + tau * (speed + tau * half)
     wave, angle, speed, half = knot
     u = angle + tau * (speed + tau * half)

@@ -14,6 +14,7 @@ from itertools import pairwise
 
 import mujoco  # its bindings are compiled and carry no types
 import numpy as np
+from numpy.typing import NDArray
 
 from controller.clock import Chunk, Feedback, Floats, Load, Machine, MachineAlarm
 from twin.machine.assembly import Assembly
@@ -68,11 +69,9 @@ class Guarded:
     def advance(self, chunk: Chunk, load: Load | None = None) -> Feedback:
         """Move along the chunk up to its end, or to the tick of the first collision."""
         feedback = self._machine.advance(chunk, load)
-        tool = chunk.tool[: feedback.ticks]
-        change = np.flatnonzero(tool[1:] != tool[:-1]) + 1
-        for begin, end in pairwise([0, *change.tolist(), feedback.ticks]):
-            number = int(tool[begin]) if begin < end else 0
-            touch = self._shapes.get(number, self._first).first_touch(feedback.actual[begin:end])
+        for begin, end in _stretches(chunk.tool[: feedback.ticks]):
+            shapes = self._shapes.get(int(chunk.tool[begin]), self._first)
+            touch = shapes.first_touch(feedback.actual[begin:end])
             if touch is not None:
                 tick, words = touch
                 return _ended(feedback, begin + tick + 1, words)
@@ -173,6 +172,16 @@ class _Shapes:
     def _words(self, pair: _Pair) -> str:
         moving, fixed = self._names(pair)
         return f"{moving} touches {fixed}"
+
+
+def _stretches(tool: NDArray[np.int16]) -> list[tuple[int, int]]:
+    """First and one-past-last row of each stretch of (n,) tool numbers with the same one."""
+    if not len(tool):
+        return []
+    if (tool == tool[0]).all():
+        return [(0, len(tool))]
+    change = np.flatnonzero(tool[1:] != tool[:-1]) + 1
+    return list(pairwise([0, *change.tolist(), len(tool)]))
 
 
 def _ended(feedback: Feedback, ticks: int, words: str) -> Feedback:

@@ -226,7 +226,7 @@ class MujocoMachine:
 
     def _load_side(self, motor: Floats, forces: Floats | None) -> Floats:
         """(ticks, axes) positions of the load behind the motors' [m | rad]."""
-        load = motor.copy()
+        load = motor.copy() if self._played else motor
         for k in self._played:
             load[:, k] = self._axes[k].backlash.follow(motor[:, k], None if forces is None else forces[:, k])
         return load

@@ -18,15 +18,14 @@ def sync_error(chunk: Chunk, feedback: Feedback) -> Floats:
     type, which is what the slave was told; and in a helical gear box that of the axial slide.
     """
     error = np.full(feedback.ticks, np.nan)
-    off = feedback.actual - feedback.setpoint
+    actual, setpoint = feedback.actual, feedback.setpoint
     for gear in chunk.gears:
         here = slice(gear.first, min(gear.last, feedback.ticks))
-        if gear.follow:
-            master = feedback.actual[here, gear.master] - feedback.readings[here, gear.master]
-        else:
-            master = off[here, gear.master]
+        told = feedback.readings if gear.follow else setpoint
+        master = actual[here, gear.master] - told[here, gear.master]
         asked = master * gear.numerator / gear.denominator
         for slide, rate in gear.slides:
-            asked = asked + rate * off[here, slide]
-        error[here] = (off[here, gear.slave] - asked) * ARCSEC_PER_DEG
+            asked = asked + rate * (actual[here, slide] - setpoint[here, slide])
+        off = actual[here, gear.slave] - setpoint[here, gear.slave]
+        error[here] = (off - asked) * ARCSEC_PER_DEG
     return error
