@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.cutting.closing import fanned
 from twin.cutting.crossings import Crossings, edge_key
 from twin.cutting.grid import Grid
 from twin.cutting.landing import Around, Ground, landed
@@ -69,7 +70,11 @@ def contour(ground: Ground, cells: Cells, crossings: Crossings) -> tuple[Surface
     bite = np.full(len(vertices), -1, dtype=np.int64)
     vertices, bite[~closed] = landed(ground, vertices, np.flatnonzero(~closed), around, crossings)
     quads = _quads(grid, cells, crossings, first)
-    return Surface(vertices, _triangles(vertices, normals, quads), bite), leaf
+    fine, fans = fanned(grid, crossings, quads)
+    faces = np.vstack([_triangles(vertices, normals, quads[fine]), fans])
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces] = True
+    return Surface(vertices[used], (np.cumsum(used) - 1)[faces], bite[used]), leaf[used]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +114,11 @@ def _fit(grid: Grid, cells: Cells, crossings: Crossings, sheets: _Sheets) -> tup
     normal = np.stack([totals(owner, q[:, x], n) for x in range(3)], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     height = np.einsum("nx,nx->n", q, p - middle[owner])
-    shift, values = meet(owner, q, height, n)
+    # what closes the removed solid in the air needs no planes
+    made = totals(owner, sheets.bite >= 0, n) > 0
+    mine, number = made[owner], np.cumsum(made) - 1
+    shift, values = np.zeros((n, 3)), np.zeros((n, 3))
+    shift[made], values[made] = meet(number[owner[mine]], q[mine], height[mine], int(made.sum()))
     spread = values[:, 1] / np.maximum(values[:, 2], 1e-12)
     vertices = middle + shift
     # a vertex that leaves its cell may fold the mesh: fall back to the middle of the crossings

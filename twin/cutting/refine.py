@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from twin.cutting.grid import BLOCK, Grid
 from twin.cutting.local import ROUNDING, Tangents, can_matter, joined, without_bites
+from twin.cutting.meeting import Meeting
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, leaders
 from twin.cutting.sweep import Sweep
 
@@ -116,10 +117,10 @@ def first_cull(sweep: Sweep, middle: Floats, corners: Floats) -> Culled:
     def work(part: slice) -> Culled:
         items = some[part]
         own = lists.of(np.arange(part.start, part.stop))
-        depth = sweep.evaluate(middle[items[own.owner()]], own.bites).depth
-        judge = own.bites[leaders(depth, own.start)[1]]
+        meeting = sweep.evaluate(middle[items[own.owner()]], own.bites, gradient=True)
+        judge = own.bites[leaders(meeting.depth, own.start)[1]]
         floors = sweep.floors(middle[items], corners[items], judge, _radius(middle[items], corners[items]))
-        return _judged(sweep, middle[items], corners[items], own, floors)
+        return _judged(sweep, middle[items], corners[items], own, floors, meeting=meeting)
 
     return _gathered(len(middle), some, lists.start, work)
 
@@ -148,14 +149,26 @@ def cull(sweep: Sweep, middle: Floats, corners: Floats, parent: Ints, tangents: 
     return _gathered(len(middle), some, np.concatenate([[0], np.cumsum(length[some])]), work)
 
 
-def _judged(sweep: Sweep, middle: Floats, corners: Floats, lists: Candidates, floors: Floats) -> Culled:
-    """Cull by the tangents at the blocks' own middles."""
+def _judged(
+    sweep: Sweep,
+    middle: Floats,
+    corners: Floats,
+    lists: Candidates,
+    floors: Floats,
+    *,
+    meeting: Meeting | None = None,
+) -> Culled:
+    """Cull by the tangents at the blocks' own middles, where the bites' `meeting` may be known."""
     whole = floors.min(axis=0) > 0
     rest = np.flatnonzero(~whole & (np.diff(lists.start) > 0))
+    pairs = lists.pairs(rest)
     middle, corners, lists = middle[rest], corners[rest], lists.of(rest)
     radius = _radius(middle, corners)
     owner = lists.owner()
-    meeting = sweep.evaluate(middle.take(owner, axis=0), lists.bites, gradient=True)
+    if meeting is None:
+        meeting = sweep.evaluate(middle.take(owner, axis=0), lists.bites, gradient=True)
+    else:
+        meeting = meeting.of(pairs)
     change, over = sweep.bound(meeting, lists.bites, radius[owner])
     plane = np.vstack([meeting.depth, meeting.gradient.T])
     keep = can_matter(plane, over, owner, _spokes(middle, corners), floors[:, rest])

@@ -8,6 +8,7 @@ from twin.cutting.pairs import batches, in_parallel, leaders
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.patches import Patches, quarters
+from twin.cutting.regular.tiles import UNCUT
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -20,6 +21,21 @@ NEAR = 0.25
 """Share of the rays' way on which the part nearer to the shell is split off."""
 SLOPE = 1.1
 """Bound on a depth's gradient where the culling proves anything at all: the stock is slower than the edge."""
+
+LOOKED_AT = 8
+"""Gaps at most in whose middles a look is taken before anything is proved."""
+
+
+def look_inside(sweep: Sweep, chart: Chart, thick: float) -> None:
+    """Raise IrregularError where the middle of a gap is left standing: no proof can hold, and the look is
+    soon taken."""
+    nu, nz = chart.cells
+    gaps = np.unique(np.linspace(0, chart.gaps - 1, LOOKED_AT).astype(np.int64))
+    gap, k = np.meshgrid(gaps, [0, nz // 2, nz])
+    i = np.full(gap.shape, nu // 2)
+    points, _ = chart.at(gap, i, k, -0.5 * (thick + chart.inner[i]))
+    if (sweep.unculled(points.reshape(-1, 3)) <= 0).any():
+        raise IrregularError(UNCUT)
 
 
 def prove_inside(sweep: Sweep, chart: Chart, patch: Patches, tangents: Tangents, thick: float) -> None:

@@ -13,6 +13,7 @@ from twin.cutting.field import DepthField
 from twin.cutting.motion import CutterMotion
 from twin.cutting.regular.chart import Frame, chart_along
 from twin.cutting.regular.indexing import Indexing, find_indexing
+from twin.cutting.regular.inside import look_inside
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.proved import prove
 from twin.cutting.regular.screw import lay_out
@@ -104,6 +105,7 @@ def regular_cut(
     if indexing.teeth * len(z) * len(surface) > LIMIT:
         raise IrregularError("more cells than the memory allows")
     chart = chart_along(frame, motion.mount, surface, z, lift)
+    look_inside(sweep, chart, thick)
     proved = prove(sweep, chart, tiling, thick, screwed)
     made = skin(sweep, proved, thick)
     return Regular(tubes(chart, made), (across, float(z[1] - z[0])), proved.pairs, coarser)
