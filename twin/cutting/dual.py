@@ -115,7 +115,7 @@ def _fit(grid: Grid, cells: Cells, crossings: Crossings, sheets: _Sheets) -> tup
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     height = np.einsum("nx,nx->n", q, p - middle[owner])
     # what closes the removed solid in the air needs no planes
-    made = totals(owner, sheets.bite >= 0, n) > 0
+    made = totals(owner, (sheets.bite >= 0).astype(np.float64), n) > 0
     mine, number = made[owner], np.cumsum(made) - 1
     shift, values = np.zeros((n, 3)), np.zeros((n, 3))
     shift[made], values[made] = meet(number[owner[mine]], q[mine], height[mine], int(made.sum()))
