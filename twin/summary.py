@@ -1,4 +1,4 @@
-"""A run in words and rows: for the terminal and for the report."""
+"""A run in words and rows, for its report."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,15 +12,12 @@ from twin.advice.advice import Advice
 from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutting.chips import Chips
-from twin.inspection.result import GearResult, Inspection, PolygonResult
 from twin.load.figures import load_rows, load_words
 from twin.machine.collisions import touch_at
 from twin.machine.silhouette import outlines
 from twin.outcome import Outcome
 from twin.recording import Recording
-from twin.regression.judge import table
 from twin.report.data import Contact, Message, Part, Program, ReportData, Row, Severity, ToolOutline
-from twin.report.words import headline
 from twin.sync import Spectrum
 
 Floats = NDArray[np.float64]
@@ -99,82 +96,6 @@ def messages(outcome: Outcome) -> tuple[Message, ...]:
         for miss in outcome.missed
     ]
     return tuple(_message(severity, a) for severity, a in said) + tuple(notes) + tuple(missed)
-
-
-def lines(outcome: Outcome) -> list[str]:
-    """What the terminal says when a run has ended."""
-    said = [str(a) for a in (*outcome.session.alarms, *outcome.session.warnings, *outcome.advice)]
-    said += [f"note: {note}" for note in outcome.cut.notes]
-    if outcome.chips is not None:
-        said.append(f"  {chip_words(outcome.chips)}")
-    if outcome.loaded is not None:
-        said.append(f"  cutting forces: {load_words(outcome.loaded)}")
-    return said + part_lines(outcome.inspection, messages(outcome)) + expected_lines(outcome)
-
-
-def expected_lines(outcome: Outcome) -> list[str]:
-    """Whether the part is what the job expects."""
-    count, missed = len(outcome.job.expect), len(outcome.missed)
-    if not count:
-        return []
-    if not missed:
-        return [f"As expected: {count} of {count} in [expect] of {outcome.job.path}"]
-    return [f"Not as expected: {missed} of {count} in [expect] of {outcome.job.path}", *table(outcome.missed)]
-
-
-def part_lines(inspection: Inspection, said_before: tuple[Message, ...] = ()) -> list[str]:
-    """Key figures and verdict of a part."""
-    said: list[str] = []
-    if inspection.gear:
-        said += _gear_lines(inspection.gear)
-    elif inspection.polygon:
-        said += _polygon_lines(inspection.polygon)
-    nothing = np.zeros((0, 3))
-    part = Part(vertices=nothing, faces=nothing.astype(int), deviation_um=nothing[:, 0])
-    head = headline(ReportData(title="", messages=said_before, inspection=inspection, part=part))
-    said.append(f"{head.label}: {head.sentence}")
-    said += [f"  - {finding}" for finding in head.findings]
-    return said
-
-
-def _gear_lines(gear: GearResult) -> list[str]:
-    def row(name: str, left: float | None, right: float | None) -> str:
-        shown = ["  —   " if v is None else f"{v:6.2f}" for v in (left, right)]
-        return f"  {name:<24} left {shown[0]} µm   right {shown[1]} µm"
-
-    a, b = gear.left, gear.right
-    size = f"  tip {gear.tip_diameter_mm:.3f} mm, root {gear.root_diameter_mm:.3f} mm"
-    if gear.span_mm is not None:
-        size += f", span over {gear.span_teeth} teeth {gear.span_mm:.4f} mm"
-    return [
-        f"  {gear.number_of_teeth} teeth, module {gear.normal_module_mm:.4f} mm, "
-        f"helix {_signed(gear.helix_angle_deg, 4)}° ({gear.hand})",
-        size,
-        row("profile slope f_Hα", a.profile_slope_um, b.profile_slope_um),
-        row("profile form f_fα", a.profile_form_um, b.profile_form_um),
-        row("helix slope f_Hβ", a.helix_slope_um, b.helix_slope_um),
-        row("helix form f_fβ", a.helix_form_um, b.helix_form_um),
-        row("single pitch f_p", a.single_pitch_um, b.single_pitch_um),
-        row("cumulative pitch F_p", a.cumulative_pitch_um, b.cumulative_pitch_um),
-    ]
-
-
-def _signed(value: float, digits: int) -> str:
-    """A number with its sign, and no sign on what rounds to zero."""
-    rounded = round(value, digits)
-    return f"{rounded:+.{digits}f}" if rounded else f"{0.0:.{digits}f}"
-
-
-def _polygon_lines(polygon: PolygonResult) -> list[str]:
-    def mm(value: float | None) -> str:
-        return "—" if value is None else f"{value:.4f} mm"
-
-    return [
-        f"  {polygon.number_of_sides} sides, across flats {mm(polygon.across_flats_mm)}, "
-        f"by caliper {mm(polygon.across_flats_caliper_mm)}, across corners {mm(polygon.across_corners_mm)}",
-        f"  bow {_signed(polygon.bow_um, 2)} µm ({'concave' if polygon.bow_um < -0.005 else 'convex'}), "
-        f"flatness {polygon.flatness_um:.2f} µm, twist {_signed(polygon.twist_deg_per_mm, 4)} °/mm",
-    ]
 
 
 def _message(severity: Severity, alarm: Alarm | Advice) -> Message:
@@ -264,7 +185,7 @@ def _changed(table: Mapping[str, Any], prefix: str = "") -> str:
 def sync_words(found: Spectrum) -> str:
     """The synchronisation error in one line."""
     text = (
-        f"error at {abs(found.work_rpm):.4g} rpm of the work: mean {_signed(found.mean_arcsec, 2)}″, "
+        f"error at {abs(found.work_rpm):.4g} rpm of the work: mean {signed(found.mean_arcsec, 2)}″, "
         f"rms {found.rms_arcsec:.2g}″ about it"
     )
     if lines := found.strongest(1):
@@ -273,6 +194,12 @@ def sync_words(found: Spectrum) -> str:
             f"; strongest line {amplitude:.2g}″, {order:.4g} a turn of the work, {per_tool:.4g} of the tool"
         )
     return text
+
+
+def signed(value: float, digits: int) -> str:
+    """A number with its sign, and no sign on what rounds to zero."""
+    rounded = round(value, digits)
+    return f"{rounded:+.{digits}f}" if rounded else f"{0.0:.{digits}f}"
 
 
 def chip_words(chips: Chips) -> str:

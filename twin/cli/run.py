@@ -10,7 +10,7 @@ from twin.job import read_job
 from twin.outcome import Options, Outcome
 from twin.progress import shown
 from twin.run import run_job
-from twin.summary import lines
+from twin.terminal import lines
 
 
 def run_command(options: argparse.Namespace) -> ExitCode:
