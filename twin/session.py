@@ -11,6 +11,7 @@ from controller.clock import Machine
 from controller.cnc import Controller
 from controller.language.source import Program
 from controller.tables.alarms import Alarm
+from twin.clashes.clash import Clash
 from twin.course import Course, Tape
 from twin.cutters.cutter import Cutter
 from twin.cutting.motion import CutterMotion
@@ -42,6 +43,8 @@ class Session:
     """idle time that was passed over"""
     rapid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
     """(n,) whether the slides moved at rapid, of every sample of the recording"""
+    clashes: tuple[Clash, ...] = ()
+    """where a cutter took metal as it must not; their alarms are among `alarms`"""
     common: Mapping[int, float | None] = field(default_factory=dict)
     """common variables of the control at the end, #100 to #199 and #500 to #999"""
 

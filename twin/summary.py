@@ -9,19 +9,17 @@ from numpy.typing import NDArray
 
 from controller.tables.alarms import Alarm
 from twin.advice.advice import Advice
+from twin.contact import contact_of
 from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutting.chips import Chips
 from twin.load.figures import load_rows, load_words
-from twin.machine.collisions import touch_at
-from twin.machine.silhouette import outlines
 from twin.outcome import Outcome
 from twin.recording import Recording
-from twin.report.data import Contact, Message, Part, Program, ReportData, Row, Severity, ToolOutline
+from twin.report.data import Message, Part, Program, ReportData, Row, Severity, ToolOutline
 from twin.sync import Spectrum
 
 Floats = NDArray[np.float64]
-COLLISION = "HT9030"
 
 
 def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object]) -> ReportData:
@@ -42,7 +40,7 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
             )
         ),
         messages=messages(outcome),
-        contact=_contact(outcome),
+        contact=contact_of(outcome),
         part=Part(
             vertices=remains.vertices,
             faces=remains.faces,
@@ -57,27 +55,6 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
             )
             for tool in outcome.ready.tools
         ),
-    )
-
-
-def _contact(outcome: Outcome) -> Contact | None:
-    """The collision that ended the run, with the machine as it stood then."""
-    collision = next((a for a in outcome.session.alarms if a.number == COLLISION), None)
-    recording = outcome.session.recording
-    if collision is None or not len(recording.time_s):
-        return None
-    number = int(recording.tool[-1])
-    tools = outcome.ready.tools
-    assembly = next((t for t in tools if t.number == number), tools[0]).assembly
-    touch = touch_at(assembly, recording.actual[-1])
-    if touch is None:
-        return None
-    shapes = outlines(assembly, recording.actual[-1])
-    return Contact(
-        bodies=touch.bodies,
-        point=touch.point,
-        shapes=tuple((shape.body, shape.points) for shape in shapes),
-        found=collision.found,
     )
 
 

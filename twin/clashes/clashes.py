@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from controller.span import Span
 from controller.tables.alarms import Alarm
+from twin.clashes.clash import Clash
 from twin.clashes.edges import AROUND, Places, edge_points, places
 from twin.clashes.runs import Manner, Run, Ways, runs
 from twin.clashes.standing import below_surface, standing
@@ -40,22 +41,23 @@ SUSPECTS = 600
 
 
 def judged(blank: Blank, session: Session) -> Session:
-    """The session with the alarms of its clashes."""
-    return replace(session, alarms=(*session.alarms, *clashes(blank, session)))
+    """The session with its clashes and their alarms."""
+    found = clashes(blank, session)
+    return replace(session, alarms=(*session.alarms, *(clash.alarm for clash in found)), clashes=found)
 
 
-def clashes(blank: Blank, session: Session) -> tuple[Alarm, ...]:
+def clashes(blank: Blank, session: Session) -> tuple[Clash, ...]:
     """Every block in which a tool took metal the wrong way, in the order of time."""
-    found: list[tuple[float, Alarm]] = []
+    found: list[Clash] = []
     for number, (cutter, motion) in enumerate(session.motions):
         found += _of_tool(blank, session, number, cutter, motion)
-    return tuple(alarm for _, alarm in sorted(found, key=lambda one: one[0]))
+    return tuple(sorted(found, key=lambda clash: clash.time_s))
 
 
 def _of_tool(
     blank: Blank, session: Session, number: int, cutter: Cutter, motion: CutterMotion
-) -> list[tuple[float, Alarm]]:
-    """Time and alarm of every run of one stretch with one tool that takes metal."""
+) -> list[Clash]:
+    """Every run of one stretch with one tool that takes metal."""
     recording = session.recording
     first = int(np.searchsorted(recording.time_s, motion.time_s[0]))
     rows = slice(first, first + len(motion.time_s))
@@ -68,7 +70,7 @@ def _of_tool(
         sync=recording.sync[rows],
     )
     fields: dict[int, Field] = {}
-    said: list[tuple[float, Alarm]] = []
+    said: list[Clash] = []
     blocks: set[int] = set()
     for run in close:
         suspects = _suspects(blank, cutter, motion, run)
@@ -93,14 +95,15 @@ def _of_tool(
         ref = recording.blocks[block]
         tool = f"T{recording.tool[first]:02d}" if recording.tool[first] else "the tool"
         said.append(
-            (
-                time,
-                Alarm(
+            Clash(
+                alarm=Alarm(
                     number=run.manner.value,
-                    found=f"{tool} comes {depth[metal].max():.2f} mm deep into standing metal, "
+                    found=f"{tool} comes {depth[metal].max():.2f} mm deep into standing metal of the blank, "
                     f"at {time:.3f} s",
                     span=Span(file=ref.file, line=ref.line),
                 ),
+                time_s=time,
+                point=suspects.work[metal[np.argmin(suspects.instant[metal])]],
             )
         )
     return said

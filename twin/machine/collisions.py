@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from controller.clock import Chunk, Feedback, Floats, Load, Machine, MachineAlarm
 from twin.machine.assembly import Assembly
+from twin.machine.silhouette import shape_name
 
 MM = 1e-3
 FAR = 10.0
@@ -163,11 +164,7 @@ class _Shapes:
         return Touch(bodies=self._names(pair), point=point)
 
     def _names(self, pair: _Pair) -> tuple[str, str]:
-        moving, fixed = (
-            self._model.body(self._model.geom_bodyid[g]).name.replace("_", " ") or "a body without a name"
-            for g in (pair.moving, pair.fixed)
-        )
-        return moving, fixed
+        return shape_name(self._model, pair.moving), shape_name(self._model, pair.fixed)
 
     def _words(self, pair: _Pair) -> str:
         moving, fixed = self._names(pair)

@@ -39,9 +39,14 @@ def outlines(assembly: Assembly, axes: Floats) -> tuple[Outline, ...]:
         if not (model.geom_contype[k] or model.geom_conaffinity[k]):
             continue
         points = data.geom_xpos[k] + _corners(model, k) @ data.geom_xmat[k].reshape(3, 3).T
-        body = model.body(model.geom_bodyid[k]).name.replace("_", " ")
-        found.append(Outline(body=body, points=(points - origin) * MM_PER_M))
+        found.append(Outline(body=shape_name(model, k), points=(points - origin) * MM_PER_M))
     return tuple(found)
+
+
+def shape_name(model: mujoco.MjModel, geom: int) -> str:
+    """What a shape is called: by its own name, else by that of its body."""
+    name = model.geom(geom).name or model.body(model.geom_bodyid[geom]).name
+    return name.replace("_", " ") or "a body without a name"
 
 
 def _corners(model: mujoco.MjModel, geom: int) -> Floats:

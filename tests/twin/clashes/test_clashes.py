@@ -1,5 +1,7 @@
 """Cutters that meet the stock at rapid, or with a spindle at rest: which block, how deep; what is none."""
 
+import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,8 +12,11 @@ from controller.language.source import load_program
 from controller.tables.alarms import Alarm
 from twin.clashes.clashes import clashes
 from twin.cutting.blank import Blank
+from twin.errors import ExitCode
 from twin.job import read_job
+from twin.outcome import Options
 from twin.presets import cutters_of, settings_of
+from twin.run import run_job
 from twin.session import Session, run_program
 from twin.setup import make_ready
 
@@ -57,7 +62,7 @@ def ran(folder: Path, program: str, job: str = JOB) -> tuple[Blank, Session]:
 
 def said(folder: Path, program: str, job: str = JOB) -> tuple[Alarm, ...]:
     """What comes of it."""
-    return clashes(*ran(folder, program, job))
+    return tuple(clash.alarm for clash in clashes(*ran(folder, program, job)))
 
 
 def line_of(program: str, block: str) -> int:
@@ -69,7 +74,8 @@ def test_rapid_into_the_blank_is_named_with_its_block_and_depth(tmp_path: Path) 
     is 2 mm high: 11.66 mm ahead of the centre."""
     program = f"{IN_SYNC}G00 X40.\nG00 Z-4.\nG00 X50.\nS0\nG80\n"
     blank, session = ran(tmp_path, program)
-    (alarm,) = clashes(blank, session)
+    (clash,) = clashes(blank, session)
+    alarm = clash.alarm
     assert alarm.number == "HT9032"
     assert alarm.span
     assert alarm.span.line == line_of(program, "G00 Z-4.")
@@ -80,6 +86,11 @@ def test_rapid_into_the_blank_is_named_with_its_block_and_depth(tmp_path: Path) 
     z = float(np.interp(time, motion.time_s, motion.centre[:, 2]))
     # one of twelve gashes comes by every 8 ms, which at rapid are 3 mm
     assert 11.4 - 6.0 < z < 11.66
+    assert clash.time_s == pytest.approx(time, abs=6e-4)
+    # a tip, at the side of the blank that faces the tool, within what the rapid does between two gashes
+    assert math.hypot(*clash.point[:2]) < 22.0
+    assert clash.point[0] > 19.9
+    assert -6.0 < clash.point[2] < 0.0
 
 
 def test_rapid_through_the_gaps_that_were_cut_is_none(tmp_path: Path) -> None:
@@ -125,10 +136,27 @@ def test_hob_that_turns_in_the_gear_box_at_work_that_stands(tmp_path: Path) -> N
     blank, session = ran(tmp_path, program)
     ((cutter, motion),) = session.motions
     stuck = replace(motion, work_angle=np.zeros(len(motion.time_s)))
-    (alarm,) = clashes(blank, replace(session, motions=((cutter, stuck),)))
+    (clash,) = clashes(blank, replace(session, motions=((cutter, stuck),)))
+    alarm = clash.alarm
     assert (alarm.number, alarm.span and alarm.span.line) == ("HT9034", line_of(program, "G01 Z-26. F4."))
 
 
 @pytest.mark.parametrize("radial", ["X46.", "X44.2"])
 def test_a_rapid_beside_the_blank_is_none(tmp_path: Path, radial: str) -> None:
     assert said(tmp_path, f"{IN_SYNC}G00 {radial}\nG00 Z-40.\nG00 X50.\nS0\nG80\n") == ()
+
+
+def test_the_run_shows_where_they_met(tmp_path: Path) -> None:
+    """By hand: at rest one gash points to the work, its edge meets the face as the hob's centre does."""
+    (tmp_path / "job.toml").write_text(JOB, encoding="utf-8")
+    program = f"O1\n{BESIDE}G98 G01 X40. F2000.\nG01 Z-4. F300.\nG00 X50.\nM30\n"
+    (tmp_path / "program.nc").write_text(program, encoding="utf-8")
+    outcome = run_job(read_job(tmp_path), tmp_path / "out", Options(ideal=True, cell_mm=4.0))
+    assert outcome.exit_code is ExitCode.FINDING
+    (alarm,) = json.loads((tmp_path / "out" / "alarms.json").read_text(encoding="utf-8"))["alarms"]
+    assert (alarm["number"], alarm["line"]) == ("HT9033", 6)
+    (clash,) = outcome.session.clashes
+    z = np.interp(clash.time_s, outcome.session.recording.time_s, outcome.session.recording.actual[:, 1])
+    assert -0.1 - 0.5 <= z + 300.0 <= -0.1  # what stands 0.1 mm inside counts, every 0.5 mm of way
+    picture = (tmp_path / "out" / "collision.svg").read_text(encoding="utf-8")
+    assert "Where cutter touches blank" in picture

@@ -78,7 +78,7 @@ def test_head_on_its_way_into_the_jaws_stops_at_the_first_tick_that_touches(size
     touches = -88.0 + math.sqrt(58.0**2 - beside**2)
     expected = int(np.argmax(setpoint[:, Z] + 300.0 <= touches)) + 1
     assert abs(ticks - expected) <= 1  # the distance itself is known to a micrometre
-    assert (alarm.number, alarm.found) == ("HT9030", "carrier touches work spindle")
+    assert (alarm.number, alarm.found) == ("HT9030", "carrier touches jaws")
 
 
 def test_cutter_may_meet_the_blank() -> None:
@@ -155,5 +155,5 @@ def test_alarm_names_bodies_time_and_line() -> None:
     assert alarm.number == "HT9030"
     assert alarm.span
     assert (alarm.span.file, alarm.span.line) == ("a.nc", 4)
-    assert alarm.found == f"carrier touches work spindle, at {controller.tick * 1e-3:.3f} s"
+    assert alarm.found == f"carrier touches jaws, at {controller.tick * 1e-3:.3f} s"
     assert controller.finished
