@@ -69,20 +69,32 @@ def test_eccentric_work(hobbed):
         np.testing.assert_allclose(found, -20.0 * outward @ towards, atol=0.1)
 
 
-def test_tilted_work(hobbed, ideal):
-    """f_Hβ varies once per turn over the teeth with amplitude L_β tan τ."""
+@pytest.mark.parametrize("helix", [0.0, 20.0])
+def test_tilted_work(hobbed, helix):
+    """f_Hβ varies once per turn over the teeth with amplitude L_β tan τ; on a helical gear the tilt moves the
+    flanks along the axis, too, r τ tan β in the transverse plane: L_β tan τ / cos² β as long as L_β is short."""
     length, tilt, phase = 2.0, 0.1, 25.0
-    gear = hobbed(f"work_tilt_deg = {tilt}\nwork_tilt_phase_deg = {phase}", length=length, feed=0.2)
+    settings = {"helix": helix, "length": length, "feed": 0.2}
+    gear = hobbed(f"work_tilt_deg = {tilt}\nwork_tilt_phase_deg = {phase}", **settings)
     teeth = np.arange(0, 20, 2)
-    rise = helix_slopes(gear, teeth, hobbed(length=length, feed=0.2))
+    rise = helix_slopes(gear, teeth, hobbed(**settings))
     # the blank's front end leans to `phase`: what is cut there stands off to the other side
     towards = np.array([math.cos(math.radians(phase)), math.sin(math.radians(phase)), 0.0])
-    outward = [
-        gear.nominal(teeth, side, np.full(10, 20.0), np.full(10, -1.0))[1] @ towards for side in (1, -1)
-    ]
-    expected = -1e3 * length * math.tan(math.radians(tilt)) * np.array(outward)
-    assert np.abs(expected).max() > 3.3
+    about = np.cross([0.0, 0.0, 1.0], towards) * math.tan(math.radians(tilt))
+    z = np.linspace(-length, 0.0, 21)
+    radius = np.full(len(z), gear.gear.measuring_diameter / 2)
+    expected = np.zeros((2, len(teeth)))
+    for row, side in enumerate((1, -1)):
+        for k, tooth in enumerate(teeth):
+            points, tangent = gear.nominal(tooth, side, radius, z)
+            moved = -1e3 * np.cross(about, points + np.array([0.0, 0.0, length / 2]))
+            # normal to the flank, as long as its part in the transverse plane is 1
+            normal = tangent - side * gear.gear.base_radius * gear.gear.twist * np.array([0.0, 0.0, 1.0])
+            expected[row, k] = np.polyfit(z, (moved * normal).sum(axis=1), 1)[0] * length
     np.testing.assert_allclose(rise, expected, atol=0.07)
+    amplitude = 1e3 * length * math.tan(math.radians(tilt)) / math.cos(math.radians(helix)) ** 2
+    once_per_turn = 2.0 * np.abs(np.fft.fft(rise, axis=1)[:, 1]) / len(teeth)
+    np.testing.assert_allclose(once_per_turn, amplitude, rtol=0.02)
 
 
 @pytest.mark.parametrize(("column", "order", "per_turn"), [(3, 1, 1), (3, 5, 5), (2, 1, 20)])
@@ -145,14 +157,22 @@ def test_gash_error(hobbed, ideal):
     assert max(nothing, -never) < 0.02
 
 
-def test_hob_lead_error(hobbed, ideal):
-    """f_Hα ≈ E cos α_n · L_α/p_b: first order in E."""
+@pytest.mark.parametrize("helix", [0.0, 20.0])
+def test_hob_lead_error(hobbed, helix):
+    """f_Hα ≈ E cos α_n · L_α/p_b: first order in E.
+
+    In the plane across the axis a deviation is 1/cos β_b of the normal one, and so is a way along the path of
+    contact, on which one turn of the hob is p_bn: together 1/cos² β_b on a helical gear.
+    """
     error = 10.0
-    gear = hobbed(f"hob_lead_error_um_per_turn = {error}", length=0.4, feed=0.2)
-    roll, deviation = profile(gear, 3, 38.2, 43.5)
-    _, plain = profile(ideal, 3, 38.2, 43.5)
+    settings = {"helix": helix, "length": 0.4, "feed": 0.2}
+    gear, even = hobbed(f"hob_lead_error_um_per_turn = {error}", **settings), hobbed(**settings)
+    low, high = gear.gear.reference_diameter - 1.8, gear.gear.reference_diameter + 3.5
+    roll, deviation = profile(gear, 3, low, high)
+    _, plain = profile(even, 3, low, high)
     base_pitch = math.pi * 2.0 * math.cos(ALPHA)
-    expected = error * math.cos(ALPHA) * (roll[-1] - roll[0]) / base_pitch
+    inclined = math.sin(math.radians(helix)) * math.cos(ALPHA)  # sin β_b
+    expected = error * math.cos(ALPHA) * (roll[-1] - roll[0]) / base_pitch / (1.0 - inclined**2)
     for side in range(2):
         slope = np.polyfit(roll, deviation[side] - plain[side], 1)[0] * (roll[-1] - roll[0])
         assert slope == pytest.approx(expected, rel=0.02)
