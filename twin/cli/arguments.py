@@ -173,3 +173,15 @@ def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "--case", default="spur_m2_z20_b20", metavar="NAME", help="a cut (default: spur_m2_z20_b20)"
     )
     return bench
+
+
+def add_machine(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> argparse.ArgumentParser:
+    """`machine`: its drives."""
+    machine = commands.add_parser("machine", help="step and frequency response of every axis")
+    machine.add_argument(
+        "machine", metavar="MODEL_or_JOB", help="a model, for example hobbing_lathe, or a job with its drives"
+    )
+    machine.add_argument(
+        "--out", type=Path, metavar="FILE", help="of the picture (default: out/…_drives.svg)"
+    )
+    return machine

@@ -14,6 +14,7 @@ from twin.cli.arguments import (
     add_compensate,
     add_explain,
     add_inspect,
+    add_machine,
     add_new,
     add_run,
 )
@@ -87,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
         (add_new, _new),
         (add_budget, _budget),
         (add_compensate, _compensate),
+        (add_machine, _machine),
         (add_bench, _bench),
     ):
         add(commands).set_defaults(command=command)
@@ -137,6 +139,12 @@ def _compensate(options: argparse.Namespace) -> ExitCode:
     from twin.cli.compensate import compensate_command  # noqa: PLC0415
 
     return compensate_command(options)
+
+
+def _machine(options: argparse.Namespace) -> ExitCode:
+    from twin.cli.machine import machine_command  # noqa: PLC0415
+
+    return machine_command(options)
 
 
 def _bench(options: argparse.Namespace) -> ExitCode:

@@ -83,6 +83,18 @@ class Loops:
         response = np.linalg.solve(np.eye(4 * k) - state / turn, before / turn**2 + now / turn + due)
         return np.asarray(response[:, :k], dtype=np.complex128)
 
+    def step_response(self, axis: int, periods: int) -> Floats:
+        """(n,) position of an axis at the end of each period after its setpoint has jumped from 0 to 1."""
+        k = len(self.gains)
+        state, given = self.closed()
+        now, setpoints, found = np.zeros(4 * k), np.zeros(3 * k), np.zeros(periods)
+        for period in range(periods):
+            # before, now, due: the jump is due at the end of the first period
+            setpoints[axis + (2 - min(period, 2)) * k] = 1.0
+            now = state @ now + given @ setpoints
+            found[period] = now[axis]
+        return found
+
     def _plant(self) -> tuple[Floats, Floats]:
         """(2k, 2k) map of (q, v) and (2k, k) of the force over one control period."""
         k, h = len(self.mass), self.period_s / self.substeps

@@ -72,7 +72,7 @@ def test_eccentric_work(hobbed):
 @pytest.mark.parametrize("helix", [0.0, 20.0])
 def test_tilted_work(hobbed, helix):
     """f_Hβ varies once per turn over the teeth with amplitude L_β tan τ; on a helical gear the tilt moves the
-    flanks along the axis, too, r τ tan β in the transverse plane: L_β tan τ / cos² β as long as L_β is short."""
+    flanks along the axis, too, r τ tan β in the transverse plane: L_β tan τ / cos² β, where L_β is short."""
     length, tilt, phase = 2.0, 0.1, 25.0
     settings = {"helix": helix, "length": length, "feed": 0.2}
     gear = hobbed(f"work_tilt_deg = {tilt}\nwork_tilt_phase_deg = {phase}", **settings)
