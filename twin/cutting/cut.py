@@ -13,6 +13,7 @@ from twin.cutting.crossings import find_crossings, leaf_cells, left_volume, node
 from twin.cutting.dual import Cells, Surface, contour
 from twin.cutting.engagement import StockCylinder, axes_apart, scraped
 from twin.cutting.facets import divided
+from twin.cutting.feed_marks import unmarked
 from twin.cutting.fields import tool_field
 from twin.cutting.grid import Grid
 from twin.cutting.landing import Ground
@@ -78,7 +79,10 @@ def cut(
         return _uncut(blank, ("the tool never moved: nothing was cut",))
     closest = min(_closest(c, m) for c, m in tools)
     cutters = [c for c, _ in tools]
-    grid = plan_grid(blank, cutters, closest=closest, cell_mm=cell_mm, tolerance_um=tolerance_um)
+    smooth = all(unmarked(c, m, blank) for c, m in tools)
+    grid = plan_grid(
+        blank, cutters, closest=closest, cell_mm=cell_mm, tolerance_um=tolerance_um, smooth=smooth
+    )
     cell_mm, tolerance_um = useful(blank, cutters, cell_mm=cell_mm, tolerance_um=tolerance_um)
     notes = [*_rubbing(blank, tools)]
     formed = _formed(blank, tools, grid.cell_mm[0])

@@ -22,6 +22,8 @@ LEAST = 1e-6
 """[mm] below which a cell is hopeless, whatever its size"""
 WIDEST = 0.05
 """Share of the blank's radius: in blocks of wider cells hardly a pass can be left out"""
+SMOOTH = 2.5
+"""Times as wide cells do on a part without feed marks: facets are divided where it bends."""
 FACETS = 2.0
 """Tolerances within which facets of the general way keep to the cut."""
 CORE = 0.02
@@ -35,20 +37,21 @@ def plan_grid(
     closest: float,
     cell_mm: float | None = None,
     tolerance_um: float = 1.0,
+    smooth: bool = False,
 ) -> Grid:
     """The grid for a cut whose edges come as near as `closest` [mm] to the work axis.
 
     `cell_mm` is its cell across the surface (twice that along z); left out, it follows from the teeth, the
-    size of the blank and the tolerance, to which errors go with the square of the cell. It is no wider than
-    WIDEST. Raises InputError for what is no cell or no tolerance, or would need more memory than ALLOWED,
-    with the estimate.
+    size of the blank and the tolerance, to which errors go with the square of the cell; on a `smooth` part,
+    without feed marks, it may be wider. It is no wider than WIDEST. Raises InputError for what is no cell or
+    no tolerance, or would need more memory than ALLOWED, with the estimate.
     """
     if cell_mm is not None and not (math.isfinite(cell_mm) and cell_mm > 0):
         raise InputError(f"a cell of {cell_mm:g} mm", remedy="valid: above 0, for example 0.1")
     if not (math.isfinite(tolerance_um) and tolerance_um > 0):
         raise InputError(f"a tolerance of {tolerance_um:g} µm", remedy="valid: above 0, for example 1")
     cell_mm, tolerance_um = useful(blank, cutters, cell_mm=cell_mm, tolerance_um=tolerance_um)
-    cell = _cell(blank, cutters) * math.sqrt(tolerance_um) if cell_mm is None else cell_mm
+    cell = _cell(blank, cutters, smooth=smooth) * math.sqrt(tolerance_um) if cell_mm is None else cell_mm
     lowest = max(CORE * blank.radius, 0.5 * blank.bore_mm, closest)
     low = max(lowest - 2.5 * cell, 0.5 * CORE * blank.radius)
     if low >= blank.radius:
@@ -109,9 +112,9 @@ def _surface(blank: Blank) -> float:
     return 2.0 * math.pi * blank.diameter_mm * (blank.length_mm + blank.radius * 0.1)
 
 
-def _cell(blank: Blank, cutters: Iterable[Cutter]) -> float:
+def _cell(blank: Blank, cutters: Iterable[Cutter], *, smooth: bool = False) -> float:
     """Cell size [mm]: what shows the cutters' teeth, or what keeps to CELLS on a toothed blank."""
-    fine = min(_detail(cutter, blank) for cutter in cutters)
+    fine = min(_detail(cutter, blank) * (SMOOTH if smooth else 1.0) for cutter in cutters)
     return max(fine, math.sqrt(_surface(blank) / (2.0 * CELLS)))
 
 
