@@ -1,7 +1,7 @@
-"""A program under way on a machine: it goes on to any tick, and can be forked there and gone on with again.
+"""A program under way on a machine, chunk after chunk.
 
-The machine's state is copied. The controller plans ahead in generators, which cannot be; given the same
-answers it comes to the same state, so a fork's controller is told all of them anew.
+What the controller proposes can be tried on a copy of the machine first, as often as one likes: a proposal
+changes nothing, and a machine in the same state does the same again.
 """
 
 import copy
@@ -77,89 +77,72 @@ class Course:
 
     def __init__(
         self,
-        begin: Callable[[], Controller],
+        controller: Controller,
         machine: Machine,
         *,
         progress: Callable[[float], None] = lambda _seconds: None,
     ) -> None:
-        """`begin` gives a controller at the start of the program."""
-        self._begin = begin
+        """Of a controller at the start of its program."""
+        self.controller = controller
         self._machine = machine
         self._progress = progress
-        self._controller: Controller | None = None
-        self._answers: list[tuple[int, Feedback | None]] = []
         self._tapes: list[Tape] = []
         self._recorded = 0
-        self.tick = 0
-        """ticks so far"""
         self.skipped = 0
         """idle ticks that were passed over"""
-        self.finished = False
 
     @property
-    def controller(self) -> Controller:
-        """The controller as it stands now."""
-        if self._controller is None:
-            self._controller = self._begin()
-            for ticks, answer in self._answers:
-                if answer is None:
-                    self._controller.skip(ticks)
-                else:
-                    self._controller.propose(ticks)
-                    self._controller.commit(answer)
-        return self._controller
+    def tick(self) -> int:
+        """Ticks so far."""
+        return self.controller.tick
 
-    def fork(self) -> "Course":
-        """Another course that has come as far as this one, and goes on by itself."""
-        other = Course(self._begin, copy.deepcopy(self._machine), progress=self._progress)
-        other._answers, other._tapes = self._answers.copy(), self._tapes.copy()
-        other._recorded = self._recorded
-        other.tick, other.skipped, other.finished = self.tick, self.skipped, self.finished
-        return other
+    def go(self, *, load: Load | None = None) -> None:
+        """Go on to the program's end or its first alarm. Raises PartError for a run beyond LONGEST_RUN_S."""
+        while (chunk := self.ahead(CHUNK)) is not None:
+            self.take(chunk, load)
 
-    def go(self, *, until: int | None = None, load: Load | None = None) -> None:
-        """Go on to the program's end or its first alarm, or up to tick `until`; idle time may lead further.
-
-        Raises PartError for a run beyond LONGEST_RUN_S.
-        """
+    def ahead(self, limit: int) -> Chunk | None:
+        """What comes next, at most `limit` ticks; None at the end. Long idle time is passed over first."""
         controller = self.controller
         settle = round(SETTLE_S / controller.tick_s)
-        while not self.finished and (until is None or self.tick < until):
-            idle = controller.idle_ticks()
-            if idle > 4 * settle and self._tapes:
-                self._skip(idle - 2 * settle)
-            limit = min(CHUNK, settle) if idle > 4 * settle else CHUNK
-            if until is not None:
-                limit = min(limit, max(until - self.tick, 1))
-            chunk = controller.propose(limit)
-            if chunk.ticks == 0:
-                self.finished = True
-                return
-            feedback = self._machine.advance(chunk, load)
-            self._tapes.append(Tape.of(chunk, feedback, controller.tick_s))
-            self._answers.append((limit, feedback))
-            controller.commit(feedback)
-            self.tick = controller.tick
-            self._recorded += feedback.ticks
-            if self._recorded * controller.tick_s > LONGEST_RUN_S:
-                raise PartError(
-                    f"the program moves for more than {LONGEST_RUN_S / 3600:g} hours",
-                    remedy="check the feed; run a part of the program",
-                )
-            self._progress(chunk.first_tick * controller.tick_s)
+        idle = controller.idle_ticks()
+        if idle > 4 * settle:
+            if self._tapes:
+                controller.skip(idle - 2 * settle)
+                self._machine.rest(idle - 2 * settle)
+                self.skipped += idle - 2 * settle
+            limit = min(limit, settle)
+        chunk = controller.propose(limit)
+        return chunk if chunk.ticks else None
+
+    def trial(self, chunk: Chunk, load: Load | None = None) -> Feedback:
+        """What the machine would make of a chunk; it stays where it is."""
+        return copy.deepcopy(self._machine).advance(chunk, load)
+
+    def take(self, chunk: Chunk, load: Load | None = None) -> Feedback:
+        """Go through a chunk. Raises PartError for a run beyond LONGEST_RUN_S."""
+        controller = self.controller
+        feedback = self._machine.advance(chunk, load)
+        self._tapes.append(Tape.of(chunk, feedback, controller.tick_s))
+        controller.commit(feedback)
+        self._recorded += feedback.ticks
+        if self._recorded * controller.tick_s > LONGEST_RUN_S:
+            raise PartError(
+                f"the program moves for more than {LONGEST_RUN_S / 3600:g} hours",
+                remedy="check the feed; run a part of the program",
+            )
+        self._progress(chunk.first_tick * controller.tick_s)
+        return feedback
 
     def tape(self, since: int = 0) -> Tape:
         """What was recorded, from tick `since` on."""
         controller = self.controller
         first = (since + 0.5) * controller.tick_s
-        tapes = [tape for tape in self._tapes if len(tape.time) and tape.time[-1] > first]
-        joined = Tape.joined(tapes, len(controller.axes))
+        recent: list[Tape] = []
+        for tape in reversed(self._tapes):
+            if len(tape.time) and tape.time[-1] <= first:
+                break
+            recent.append(tape)
+        joined = Tape.joined(recent[::-1], len(controller.axes))
         some = slice(int(np.searchsorted(joined.time, first)), None)
         return Tape(**{f.name: getattr(joined, f.name)[some] for f in fields(Tape)})
-
-    def _skip(self, ticks: int) -> None:
-        self.controller.skip(ticks)
-        self._machine.rest(ticks)
-        self._answers.append((ticks, None))
-        self.skipped += ticks
-        self.tick = self.controller.tick

@@ -9,7 +9,7 @@ from twin.cutting.cut import CutResult
 from twin.errors import ExitCode
 from twin.inspection.result import Inspection, Verdict
 from twin.job.schema import Job
-from twin.load.rounds import LoadedRun
+from twin.load.loaded import LoadedRun
 from twin.regression.judge import Miss
 from twin.session import Session
 from twin.setup import Ready

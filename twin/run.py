@@ -26,7 +26,7 @@ from twin.inspection.inspection import inspect
 from twin.inspection.sheet import to_json
 from twin.job.schema import Job
 from twin.load.figures import load_figures
-from twin.load.rounds import run_under_load
+from twin.load.loaded import run_under_load
 from twin.outcome import Options, Outcome
 from twin.output.arrays import save_arrays
 from twin.output.background import Background
@@ -90,22 +90,15 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
     size = math.ceil(cycle / period) * BYTES_PER_SAMPLE / 1e6
     tell.stage(f"running {cycle:.0f} s of machine time (recording up to {size:.0f} MB)")
 
-    def begin(*, ideal: bool) -> Course:
-        return begin_program(
+    with watch.measure("machine"):
+        course = begin_program(
             program,
             settings,
             ready,
-            ideal=ideal,
+            ideal=options.ideal,
             progress=lambda seconds: tell.share(seconds / max(cycle, period)),
         )
-
-    with watch.measure("machine"):
-        course = begin(ideal=options.ideal)
-        loaded = (
-            run_under_load(job, ready, course, outline=begin(ideal=True), tell=tell.stage)
-            if job.physics.cutting_load
-            else None
-        )
+        loaded = run_under_load(job, ready, course, tell=tell.stage) if job.physics.cutting_load else None
         session = judged(blank, loaded.session if loaded else _gone(course, ready))
     with result_folder(out) as folder, Background() as background:
         background.start(session.recording.save, folder / "recording.npz")

@@ -18,7 +18,7 @@ from twin.cutting.motion import CutterMotion
 from twin.errors import PartError
 from twin.faults.drives import misread
 from twin.kinematics import cutter_motion, part_frame
-from twin.load.forces import CuttingLoad
+from twin.load.timeline import CuttingLoad
 from twin.machine import Guarded, IdealMachine, MujocoMachine, SyncWindow
 from twin.presets import ControllerSettings
 from twin.recording import BlockRef, Recording
@@ -74,16 +74,14 @@ def begin_program(
 ) -> Course:
     """The same before its first tick."""
 
-    def controller() -> Controller:
-        return Controller(
-            program,
-            parameters=settings.parameters,
-            offsets=settings.offsets,
-            tick_s=ready.spec.control_period_s,
-            signals=settings.signals,
-            events=settings.events,
-        )
-
+    controller = Controller(
+        program,
+        parameters=settings.parameters,
+        offsets=settings.offsets,
+        tick_s=ready.spec.control_period_s,
+        signals=settings.signals,
+        events=settings.events,
+    )
     if ideal:
         contact = None if ready.probe is None else ready.probe.contact
         axes, period_s = len(ready.tools[0].assembly.joints), ready.spec.control_period_s
@@ -98,7 +96,7 @@ def begin_program(
 def record(controller: Controller, machine: Machine, ready: Ready) -> Session:
     """Run a controller's program to its end or its first alarm. Raises PartError for a run beyond
     LONGEST_RUN_S."""
-    course = Course(lambda: controller, machine)
+    course = Course(controller, machine)
     course.go()
     return session_of(course, ready)
 
@@ -181,27 +179,25 @@ def tool_motions(
 
 
 def _stretches(ready: Ready, tool: NDArray) -> list[tuple[int, int, MountedTool, bool]]:
-    """First and one-past-last sample of each stretch with one tool, and whether it cuts.
-
-    Number 0 is the first tool; the touch probe has the first tool's place, and cuts nothing.
-    """
+    """First and one-past-last sample of each stretch with one tool, and whether it cuts."""
     if not len(tool):
         return []
-    tools, probe = ready.tools, None if ready.probe is None else ready.probe.contact.probe.tool
-    by_number = {t.number: t for t in tools}
     change = np.flatnonzero(np.diff(tool)) + 1
     bounds = [0, *change.tolist(), len(tool)]
-    found = []
-    for first, last in pairwise(bounds):
-        number = int(tool[first])
-        if number == probe:
-            found.append((first, last, tools[0], False))
-            continue
-        mounted = by_number.get(number, tools[0] if number == 0 or len(tools) == 1 else None)
-        if mounted is None:
-            raise PartError(
-                f"the program calls T{number:02d}, which the job does not have",
-                remedy=f"valid: {', '.join(f'T{n:02d}' for n in by_number)}",
-            )
-        found.append((first, last, mounted, True))
-    return found
+    return [(first, last, *tool_in_place(ready, int(tool[first]))) for first, last in pairwise(bounds)]
+
+
+def tool_in_place(ready: Ready, number: int) -> tuple[MountedTool, bool]:
+    """What a tool number has in the spindle, and whether it cuts; 0 is the first tool, the touch probe has
+    the first tool's place. Raises PartError for a number that the job does not have."""
+    tools = ready.tools
+    if ready.probe is not None and number == ready.probe.contact.probe.tool:
+        return tools[0], False
+    by_number = {t.number: t for t in tools}
+    mounted = by_number.get(number, tools[0] if number == 0 or len(tools) == 1 else None)
+    if mounted is None:
+        raise PartError(
+            f"the program calls T{number:02d}, which the job does not have",
+            remedy=f"valid: {', '.join(f'T{n:02d}' for n in by_number)}",
+        )
+    return mounted, True

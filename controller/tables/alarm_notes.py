@@ -112,6 +112,7 @@ HT9020 | §1 | G32 G92 G76 | lead times speed is more than the axes can do
 HT9030 | design, The clock | | two bodies of the machine touch that are not cutter and work
 HT9031 | patent, touch measurement | | the stylus is pushed beyond its overtravel, or meets what is no band
 HT9040 | design, Contract | | motion and cutting forces do not settle: what gives way comes back as more force
+HT9041 | design, Contract | | the cut asks for more torque than the tool's drive and its momentum have
 HT9100 | hobbing, 注意事项 | G81 G51.2 | the gear box is engaged anew with another ratio while it turns
 HT9101 | §5 | G81 | S is negative while hobbing
 HT9102 | §2 | G81 | P beyond 85 degrees

@@ -51,6 +51,7 @@ _CLASS_OF = {
     "HT9033": AlarmClass.SERVO,
     "HT9034": AlarmClass.SERVO,
     "HT9040": AlarmClass.SERVO,
+    "HT9041": AlarmClass.SERVO,
     "PS": AlarmClass.PROGRAM,
     "HT": AlarmClass.PROGRAM,
     "OT": AlarmClass.OVERTRAVEL,
@@ -155,6 +156,7 @@ HT9032 | RAPID INTO THE STOCK | G00 to clear of the metal that stands, then a fe
 HT9033 | CUTTING WITH THE TOOL AT REST | S before the block
 HT9034 | HOBBING WITH THE WORK AT REST | T, L, P and Q with which the work turns
 HT9040 | UNSTABLE CUT | less feed or depth, another speed, stiffer mounts or a stronger tool drive
+HT9041 | TOOL STALLS IN THE CUT | less feed or depth, more passes, or a stronger tool drive
 """
 
 _WARNINGS = """

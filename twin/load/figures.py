@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.load.rounds import LoadedRun
+from twin.load.loaded import LoadedRun
 
 Floats = NDArray[np.float64]
 
@@ -23,8 +23,12 @@ def load_figures(loaded: LoadedRun | None) -> dict[str, object]:
             "settled": loaded.settled,
             "windows": loaded.windows,
             "rounds": loaded.rounds,
+            "mean_rounds": loaded.mean_rounds,
             "moved_um": loaded.moved_um[-1] if loaded.moved_um else 0.0,
             "frequency_hz": loaded.frequency_hz,
+            "stalled": loaded.stalled,
+            "torque_limit": loaded.torque_limit,
+            "mean_torque": loaded.mean_torque,
             "k_c11": loaded.material.k_c11,
             "m_c": loaded.material.m_c,
             "removed_mm3": loaded.removed_mm3,

@@ -32,8 +32,12 @@ class Material:
     """exponent by which thin chips cost more"""
 
     def specific_force(self, thickness: Floats) -> Floats:
-        """k_c (n,) [N/mm² = mJ/mm³] of chips of mean `thickness` (n,) [mm]."""
+        """k_c (n,) [N/mm² = mJ/mm³] of chips of `thickness` (n,) [mm]."""
         return self.k_c11 * np.maximum(thickness, THINNEST) ** -self.m_c
+
+    def growth(self, thickness: Floats) -> Floats:
+        """d ln F / d ln h (n,): by which power the force of a chip grows with its `thickness` (n,) [mm]."""
+        return np.where(thickness > THINNEST, 1.0 - self.m_c, 1.0)
 
 
 MATERIALS = {
@@ -63,7 +67,7 @@ class Physics:
     work_stiffness_n_per_um: Positive = 60.0
     """of work, arbor and spindle against the bed, the same in every direction [plausible]"""
     load_resolution_mm: Positive | None = None
-    """distance of the rays on which metal is counted; None = a 24th of the tooth pitch"""
+    """distance of the rays on which metal is counted; None = an 18th of the tooth pitch or edge width"""
 
     @property
     def compliance_um_per_n(self) -> float:

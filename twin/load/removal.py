@@ -6,25 +6,22 @@ its thickness exactly, however thin it is. Metal that hangs over an undercut goe
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutters.cutter import Cutter
-from twin.cutting.blank import Blank
-from twin.cutting.chips import SIMPSON
 from twin.cutting.field import DepthField
 from twin.cutting.motion import CutterMotion
 from twin.cutting.pairs import batches, in_parallel
-from twin.cutting.passes import REACH
-from twin.load.ray_ends import SLACK, cut_at
+from twin.load.ray_ends import cut_at
+from twin.load.reach import Reach, at_samples
 from twin.load.stock import Stock
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Tools = tuple[tuple[Cutter, CutterMotion], ...]
+Bools = NDArray[np.bool_]
 
 PASSES = 12
 """looked at together, at most"""
@@ -32,21 +29,23 @@ FAR = 1e4
 """[mm] longer than any ray"""
 THINNEST = 1e-7
 """[mm] of metal that counts as some"""
-ROUNDING = 1e-9
-"""[rad]"""
+ALWAYS = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Removal:
-    """Pieces of the removed metal, in the order of time by stretches. Frame: that of the work, which does not
-    turn."""
+    """Pieces of the removed metal, each of one ray and one pass. Frame: the work's, which does not turn."""
 
-    chip: Ints
-    """(n, 3) the chip that it belongs to: stretch with one tool, pass, tooth along the edge"""
+    index: Ints
+    """(n,) the pass that takes it"""
+    ray: Ints
+    """(n,) that it is of"""
+    end_mm: Floats
+    """(n,) where the ray is cut off"""
     volume_mm3: Floats
     """(n,)"""
-    height_mm: Floats
-    """(n,) mean height of the metal above the edge that takes it"""
+    thickness_mm: Floats
+    """(n,) of the chip there: how far metal reaches from the edge that leaves the new surface"""
     time_s: Floats
     """(n, 2) when the edge comes to it, and when it is through"""
     place_mm: Floats
@@ -58,55 +57,60 @@ class Removal:
     push: Floats
     """(n, 2) unit vector in the rake plane from the metal beyond into the edge, normal to it: components
     along the tool's axis and away from it"""
-    resolution_mm: float
 
-    def thickness_mm(self) -> Floats:
-        """(n,) mean thickness of the chip that each piece belongs to: twice the metal's mean height."""
-        _, chip = np.unique(self.chip, axis=0, return_inverse=True)
-        chip = chip.reshape(-1)
-        total = np.bincount(chip, self.volume_mm3)
-        mean = np.bincount(chip, self.volume_mm3 * self.height_mm) / np.maximum(total, 1e-300)
-        return 2.0 * mean[chip]
+    @classmethod
+    def none(cls) -> "Removal":
+        """Not a piece."""
+        shapes = {"time_s": (0, 2), "push": (0, 2)} | dict.fromkeys(("place_mm", "lever_mm", "speed"), (0, 3))
+        kinds = {"index": np.int64, "ray": np.int64}
+        return cls(
+            **{f.name: np.zeros(shapes.get(f.name, (0,)), kinds.get(f.name, float)) for f in fields(cls)}
+        )
+
+    @property
+    def middle_s(self) -> Floats:
+        """(n,) when the edge is in the middle of the piece."""
+        return self.time_s.mean(axis=1)
+
+    def of(self, rows: Bools) -> "Removal":
+        """Some of the pieces."""
+        return Removal(**{f.name: getattr(self, f.name)[rows] for f in fields(Removal)})
+
+    def taken_from(self, stock: Stock) -> Stock:
+        """What they leave of the stock."""
+        left = stock.copy()
+        np.minimum.at(left.end, self.ray, self.end_mm)
+        return left
 
 
 def removal(
-    blank: Blank,
-    tools: Tools,
-    *,
-    resolution_mm: float | None = None,
+    stock: Stock, field: DepthField, motion: CutterMotion, between: tuple[float, float] = ALWAYS
 ) -> Removal:
-    """The metal that the tools take away from a blank; `resolution_mm` is the distance of the rays on its
-    surface.
-
-    Raises InputError for a resolution that would need too much memory or time.
-    """
-    stock = Stock.of(blank, [cutter for cutter, _ in tools], resolution_mm)
-    fields_of = [DepthField(cutter, motion, blank.radius, blank.z_range) for cutter, motion in tools]
-    return cut_off(stock, [(one, np.arange(one.passes.count)) for one in fields_of], [m for _, m in tools])
+    """What the passes of a field take off the stock from one time to another [s]."""
+    names = [f.name for f in fields(Removal)]
+    parts = [Removal.none(), *pieces(stock, field, motion, between)]
+    return Removal(**{n: np.concatenate([getattr(part, n) for part in parts]) for n in names})
 
 
-def cut_off(
-    stock: Stock, passes: Sequence[tuple[DepthField, Ints]], motions: Sequence[CutterMotion]
-) -> Removal:
-    """What some passes of each stretch's field, stretch by stretch, take off the stock; it is cut."""
-    names = [f.name for f in fields(Removal) if f.name != "resolution_mm"]
-    shapes = {"chip": (0, 3), "time_s": (0, 2), "push": (0, 2)}
-    shapes |= dict.fromkeys(("place_mm", "lever_mm", "speed"), (0, 3))
-    parts = {
-        name: [np.zeros(shapes.get(name, (0,)), np.int64 if name == "chip" else float)] for name in names
-    }
-    for number, ((field, index), motion) in enumerate(zip(passes, motions, strict=True)):
-        for first in range(0, len(index), PASSES):
-            for name, values in _cut(field, motion, stock, index[first : first + PASSES], number).items():
-                parts[name].append(values)
-    return Removal(**{name: np.concatenate(parts[name]) for name in names}, resolution_mm=stock.step)
+def pieces(
+    stock: Stock, field: DepthField, motion: CutterMotion, between: tuple[float, float] = ALWAYS
+) -> Iterator[Removal]:
+    """The same, some passes after the other; none that takes nothing."""
+    left = stock.copy()
+    passes = Reach(field, motion, left, between).passes()
+    for first in range(0, len(passes), PASSES):
+        reach = Reach(field, motion, left, between)
+        part = _cut(field, motion, left, reach.pairs(passes[first : first + PASSES]))
+        middle = part.middle_s
+        part = part.of((middle >= between[0]) & (middle < between[1]))
+        if len(part.ray):
+            yield part
+            left = part.taken_from(left)
 
 
-def _cut(
-    field: DepthField, motion: CutterMotion, rays: Stock, passes: Ints, stretch: int
-) -> dict[str, NDArray]:
-    """What some passes that follow one another take off the rays; the rays are cut."""
-    ray, index = _met(field, motion, rays, passes)
+def _cut(field: DepthField, motion: CutterMotion, rays: Stock, pairs: tuple[Ints, Ints]) -> Removal:
+    """What passes take of rays, in pairs."""
+    ray, index = pairs
     parts = batches(np.arange(len(ray) + 1))
     ends = in_parallel(lambda part: cut_at(field, rays, ray[part], index[part]), parts)
     end = np.concatenate([np.zeros(0), *ends])
@@ -115,61 +119,7 @@ def _cut(
     ray, index, end = ray[order], index[order], end[order]
     start = _shortest_before(ray, rays.end[ray], end)
     some = np.flatnonzero(end < start - THINNEST)
-    ray, index, end, start = ray[some], index[some], end[some], start[some]
-    np.minimum.at(rays.end, ray, end)
-    return _seen(field, motion, rays, (ray, index, end, start), stretch)
-
-
-def _met(field: DepthField, motion: CutterMotion, rays: Stock, passes: Ints) -> tuple[Ints, Ints]:
-    """Pairs of rays and passes whose edges come to the rays' ends or further in."""
-    p = field.passes
-    work, centre = _at(motion, motion.work_angle, p.at[passes]), _at(motion, motion.centre, p.at[passes])
-    standing = _facing(field, motion, rays, (work, centre[:, 0], p.travel[passes]))
-    place = motion.mount.moved(rays.points(standing, rays.end[standing]))
-    x, y, z = place.T
-    towards, across = motion.basis[0], motion.basis[1]
-    rows: list[tuple[Ints, Ints]] = []
-    for index, turned, middle in zip(passes, work, centre, strict=True):
-        cos, sin = math.cos(turned), math.sin(turned)
-        off_x, off_y, off_z = x * cos - y * sin - middle[0], x * sin + y * cos - middle[1], z - middle[2]
-        a = off_x * towards[0] + off_y * towards[1] + off_z * towards[2]
-        b = off_x * across[0] + off_y * across[1] + off_z * across[2]
-        # the sooner or later the edge comes, the further the stock has gone on
-        way = p.travel[index] * np.minimum(np.abs(np.arctan2(b, a)) / REACH, 1.0) + SLACK
-        ray = standing[np.hypot(a, b) < field.cutter.radius + way]
-        rows.append((ray, np.full(len(ray), index)))
-    return np.concatenate([ray for ray, _ in rows]), np.concatenate([index for _, index in rows])
-
-
-def _facing(
-    field: DepthField, motion: CutterMotion, rays: Stock, seen: tuple[Floats, Floats, Floats]
-) -> Ints:
-    """Rays that still stand, and on the side of the work where some passes' edges can come to them: `seen`
-    are work angle, distance of the axes and the stock's travel (n,) of each.
-
-    Metal at an angle φ from the tool stands at most its radius · cos φ nearer to it, and what the clamping
-    shifts.
-    """
-    work, away, travel = seen
-    high = float(rays.end.max(initial=0.0))
-    farthest = math.hypot(high, float(np.abs(rays.z).max(initial=0.0)))
-    shift = np.linalg.norm(motion.mount.rotation - np.eye(3), 2) * farthest
-    shift += np.linalg.norm(motion.mount.translation)
-    least = float((away - travel).min()) - field.cutter.radius - SLACK - float(shift)
-    standing = rays.end > rays.inner
-    if least > 0.0 and np.allclose(motion.basis[0], [-1.0, 0.0, 0.0]):
-        half = math.acos(min(least / high, 1.0)) + 0.5 * float(np.ptp(work)) + ROUNDING
-        middle = -0.5 * float(work.min() + work.max())
-        if half < math.pi:
-            standing &= rays.cos * math.cos(middle) + rays.sin * math.sin(middle) >= math.cos(half)
-    return np.flatnonzero(standing)
-
-
-def _at(motion: CutterMotion, values: Floats, sample: Floats) -> Floats:
-    """Values (n, ...) of a motion at fractional samples (m,)."""
-    cell = np.clip(sample.astype(np.int64), 0, len(motion.time_s) - 2)
-    share = (sample - cell).reshape(-1, *[1] * (values.ndim - 1))
-    return values[cell] + share * (values[cell + 1] - values[cell])
+    return _seen(field, motion, rays, (ray[some], index[some], end[some], start[some]))
 
 
 def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:
@@ -186,36 +136,32 @@ def _seen(
     motion: CutterMotion,
     rays: Stock,
     pieces: tuple[Ints, Ints, Floats, Floats],
-    stretch: int,
-) -> dict[str, NDArray]:
+) -> Removal:
     """Pieces of rays, from their ends to where they stood, as the edges see them that take them away."""
     ray, index, end, start = pieces
-    middle = 0.5 * (end + start)
-    met = [field.evaluate(rays.points(ray, radius), index) for radius in (end, middle, start)]
-    height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1) @ SIMPSON
-    pitch = field.cutter.profile.pitch
-    tooth = (
-        np.rint(met[1].s / pitch).astype(np.int64) if math.isfinite(pitch) else np.zeros(len(ray), np.int64)
-    )
+    low, high = (field.evaluate(rays.points(ray, radius), index) for radius in (end, start))
     # the edge that has left the new surface is the one that bears the force
-    _, by_s, by_rho = field.cutter.profile.depth(met[0].s, met[0].rho)
-    place, lever, speed = _edge(motion, rays.points(ray, middle), met[1].instant)
+    _, by_s, by_rho = field.cutter.profile.depth(low.s, low.rho)
+    middle = 0.5 * (low.instant + high.instant)
+    place, lever, speed = _edge(motion, rays.points(ray, 0.5 * (end + start)), middle)
     # the edge needs some time to cross the ray's own breadth and height as well
-    ends = np.stack([met[0].instant, met[1].instant, met[2].instant])
-    ends = _at(motion, motion.time_s, ends.reshape(-1)).reshape(ends.shape)
+    ends = np.stack([low.instant, high.instant])
+    ends = at_samples(motion, motion.time_s, ends.reshape(-1)).reshape(ends.shape)
     around = speed[:, 1] * place[:, 0] - speed[:, 0] * place[:, 1]
     across = np.abs(speed[:, 2]) * rays.rise + np.abs(around) * rays.turn
     half = 0.5 * across / np.maximum((speed * speed).sum(axis=1), 1e-12)
-    return {
-        "chip": np.column_stack([np.full(len(ray), stretch), index, tooth]),
-        "volume_mm3": 0.5 * (start * start - end * end) * rays.turn * rays.rise,
-        "height_mm": height,
-        "time_s": np.column_stack([ends.min(axis=0) - half, ends.max(axis=0) + half]),
-        "place_mm": place,
-        "lever_mm": lever,
-        "speed": speed,
-        "push": np.column_stack([by_s, by_rho]),
-    }
+    return Removal(
+        index=index,
+        ray=ray,
+        end_mm=end,
+        volume_mm3=0.5 * (start * start - end * end) * rays.turn * rays.rise,
+        thickness_mm=np.maximum(by_s * (high.s - low.s) + by_rho * (high.rho - low.rho), THINNEST),
+        time_s=np.column_stack([ends.min(axis=0) - half, ends.max(axis=0) + half]),
+        place_mm=place,
+        lever_mm=lever,
+        speed=speed,
+        push=np.column_stack([by_s, by_rho]),
+    )
 
 
 def _edge(motion: CutterMotion, points: Floats, instant: Floats) -> tuple[Floats, Floats, Floats]:

@@ -1,348 +1,245 @@
-"""A run under its own cutting forces: window after window, round after round.
+"""A run under its own cutting forces: some ticks after the other, round after round.
 
-A window and its forces belong together when the forces that its chips cause move nothing any more. In each
-round the machine goes through the window from where the last one has left it, under forces that are tried;
-the metal that it takes away so gives the forces of the next round. A window that eight rounds do not settle
-is gone through in shorter ones; the shortest that they do not settle is an unstable cut: what is pushed away
-comes back as more force.
+Forces of a tick depend on motion and metal up to it alone. So a run is made in windows of some ticks, each
+final before the next one begins. In a window the machine goes ahead under forces that are tried, on a copy;
+the metal that it takes away so gives those of the next round, mounts in balance with them, until a round
+moves nothing any more. A window that eight rounds do not settle is halved: in shorter ones the drives have
+less time to answer, and at the shortest there is nothing left but mounts and metal.
 """
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from controller.span import Span
-from controller.tables.alarms import Alarm
-from twin.course import Course, Tape
-from twin.cutters.cutter import Cutter
-from twin.cutting.field import DepthField
+from controller.clock import Chunk, Feedback
+from twin.course import Course
 from twin.cutting.motion import CutterMotion
 from twin.job.schema import Job
-from twin.load.agreement import Agreement
-from twin.load.change import bound_um, change_um, dominant_hz
-from twin.load.forces import Clock, CuttingLoad, cutting_load, joined, no_load, summed
-from twin.load.material import Material, material_of
-from twin.load.removal import cut_off
+from twin.load.bench import Bench
+from twin.load.change import bound_um, change_um
+from twin.load.mounts import balanced
+from twin.load.relaxation import Relaxation
+from twin.load.removal import Removal
+from twin.load.span import Span
 from twin.load.stock import Stock
-from twin.load.windows import SHORTEST, Window, windows
+from twin.load.timeline import CuttingLoad
 from twin.machine.pressing import REACH
-from twin.session import Session, motions_on, session_of, ticks_of
+from twin.session import ticks_of
 from twin.setup import Ready
 
 Floats = NDArray[np.float64]
-Tools = list[tuple[Cutter, CutterMotion]]
 
 MOST_ROUNDS = 8
 SETTLED_UM = 0.1
 """by how much the last round may still have moved the part's surface"""
+TICKS = 32
+"""of a window in which metal is cut, where the job's controller knows as many ahead"""
+LONGEST = 1024
+"""[ticks] of one in which none is"""
+SLOWEST = 20_000
+"""[ticks] to a turn of the tool, the forces of which are the first guess for the next"""
+RECENT = 8
+"""[ticks] of the motion before that a window asks for"""
+STOPPED = 0.02
+"""of the speed that it is told, below which a tool in metal has stopped"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LoadedRun:
-    """A run under its own cutting forces."""
-
-    session: Session
-    load: CuttingLoad
-    """that acted on it"""
-    material: Material
-    windows: int
-    """that the run was made in"""
-    rounds: int
-    """that the hardest of them has taken"""
-    moved_um: tuple[float, ...]
-    """by how much at most each of its rounds but the first moved the part's surface"""
-    frequency_hz: float | None
-    """that its last round changed most; None where all have settled"""
-    resolution_mm: float
-    """distance of the rays on which metal was counted"""
-    tick_s: float
-
-    @property
-    def removed_mm3(self) -> float:
-        """Metal that the forces belong to."""
-        return float(self.load.removed_mm3.sum())
-
-    @property
-    def energy_j(self) -> float:
-        """Work of cutting."""
-        return float(self.load.power_w.sum()) * self.tick_s
-
-    @property
-    def mean_power_w(self) -> float:
-        """While metal is removed."""
-        return float(self.load.power_w.mean()) if len(self.load.cell) else 0.0
-
-    @property
-    def settled(self) -> bool:
-        """Whether forces and motion belong together."""
-        return self.frequency_hz is None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _State:
-    """Where a run stands whose past is final."""
-
-    course: Course
-    stock: Stock
-    cut_s: float
-    """passes up to this time have cut the stock"""
-    past: tuple[CuttingLoad, ...]
-    """what acted in each of the windows so far, by whole ticks"""
-    acted: CuttingLoad
-    """the last of it, up to the course's tick"""
-    tail: CuttingLoad
-    """of passes that have cut, from that tick on"""
-    expected: CuttingLoad
-    """of all passes from that tick on, if things go on as they have"""
-    window: Window | None = None
-    """that has led here"""
-
-    def load(self) -> CuttingLoad:
-        """All that has acted so far."""
-        return joined(self.past) if self.past else self.acted.whole()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Result:
+class Settled:
     """What the rounds of a window have come to."""
 
-    state: _State
-    rounds: int
-    moved_um: tuple[float, ...]
-    frequency_hz: float | None = None
-    """None where it has settled"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Taken:
-    """The metal of one round."""
-
-    stock: Stock
-    """that the window leaves"""
-    cut_s: float
+    chunk: Chunk
+    load: CuttingLoad
+    """that acts in it"""
     tail: CuttingLoad
-    """of the passes up to the window's end, and of earlier ones"""
-    caused: CuttingLoad
-    """of all passes that were looked at"""
+    """of metal that it has cut, on ticks behind it"""
+    stock: Stock
+    """that it leaves"""
+    moved_um: tuple[float, ...]
+    """by how much each round but the first moved the part's surface at most"""
+    settled: bool
+    slowest: float
+    """speed of the tool in metal over that which it is told, at least"""
+
+    @property
+    def rounds(self) -> int:
+        """That were needed."""
+        return len(self.moved_um) + 1
+
+    @property
+    def stalled(self) -> bool:
+        """Whether the tool has come to rest in the metal."""
+        return self.slowest < STOPPED
 
 
-def run_under_load(
-    job: Job,
-    ready: Ready,
-    course: Course,
-    *,
-    outline: Course,
-    shortest: int = SHORTEST,
-    tell: Callable[[str], None] = lambda _text: None,
-) -> LoadedRun:
-    """Run until forces and motion belong together everywhere, or up to a window that does not settle: the
-    session ends there, with the alarm HT9040.
+class Rounds:
+    """A course under its own forces, as far as it has come."""
 
-    `course` is the program before its first tick, `outline` the same on ideal axes, which says where windows
-    begin; they are `shortest` ticks long or longer. Raises InputError for a material without figures.
-    """
-    rounds = _Rounds(job, ready)
-    outline.go()
-    plan = outline.tape()
-    at = plan.actual[:, ready.tool_column], ticks_of(plan, rounds.tick_s)
-    ahead = windows(*at, shortest=shortest)
-    tell(f"cutting forces, window after window: {len(ahead)}")
-    state = rounds.begun(course)
-    results: list[_Result] = []
-    hertz, tried = None, None
-    while ahead and not state.course.finished:
-        window = ahead.pop(0)
-        if window.until is not None and window.known <= state.course.tick:
-            continue  # idle time has led beyond it
-        result = rounds.settled(state, window)
-        if result.frequency_hz is not None:
-            finer = _within(windows(*at, shortest=0), state.course.tick, window)
-            # the longest window tells the frequency best
-            hertz = hertz or result.frequency_hz
-            if finer:
-                ahead = [*finer, window, *ahead]
-                tried = result.state.acted
-                state = replace(state, expected=tried)
+    def __init__(self, job: Job, ready: Ready, course: Course, *, ticks: int = TICKS) -> None:
+        """`ticks` of a window in which metal is cut. Raises InputError for a material without figures."""
+        self.bench = Bench(job, ready)
+        self.course = course
+        self.stock = self.bench.whole()
+        self.past: list[CuttingLoad] = []
+        """what acted in each window so far, by whole ticks"""
+        self.windows: list[Settled] = []
+        """in which metal was cut"""
+        self._acted = self._tail = self.bench.no_load
+        self._shortest, self._ticks = ticks, LONGEST
+
+    def go(self) -> bool:
+        """Go on to the program's end, or to a window that does not settle or in which the tool stops; whether
+        there was none."""
+        while (chunk := self._ahead(self._ticks)) is not None:
+            clear = self._clear(chunk) if chunk.ticks > self._shortest else 0
+            if clear >= self._shortest:
+                self._take(self._shorter(chunk, clear))
+                self._ticks = min(2 * self._ticks, LONGEST)
                 continue
-            results.append(replace(result, frequency_hz=hertz))
-            state = result.state
-            break
-        results.append(result)
-        state, hertz = result.state, None
-        if tried is not None:
-            # the longer window's last round knows the rest of it better than what went before
-            rest = tried.since(state.course.tick)
-            state, tried = (replace(state, expected=rest), tried) if len(rest.cell) else (state, None)
-    load = state.load()
-    session = session_of(state.course, ready, load if len(load.cell) else None)
-    hardest = max(results, key=lambda one: (one.frequency_hz is not None, one.rounds))
-    if hardest.frequency_hz is not None:
-        session = replace(session, alarms=(*session.alarms, _unstable(hardest, session)))
-    return LoadedRun(
-        session=session,
-        load=load,
-        material=rounds.material,
-        windows=len(results),
-        rounds=hardest.rounds,
-        moved_um=hardest.moved_um,
-        frequency_hz=hardest.frequency_hz,
-        resolution_mm=state.stock.step,
-        tick_s=rounds.tick_s,
-    )
+            chunk = self._shorter(chunk, self._shortest)
+            result = self._settle(chunk)
+            while not result.settled and result.chunk.ticks > 1:
+                result = self._settle(self._shorter(chunk, result.chunk.ticks // 2))
+            self._take(result.chunk, result)
+            if len(result.load.cell):
+                self.windows.append(result)
+            idle = not len(result.load.cell) and not len(self._tail.cell)
+            self._ticks = min(2 * self._ticks, LONGEST) if idle else self._shortest
+            if not result.settled or result.stalled:
+                return False
+        return True
 
+    def _ahead(self, limit: int) -> Chunk | None:
+        """The next ticks, all with one tool."""
+        chunk = self.course.ahead(limit)
+        if chunk is None:
+            return None
+        change = np.flatnonzero(chunk.tool != chunk.tool[0])
+        return self._shorter(chunk, int(change[0])) if len(change) else chunk
 
-class _Rounds:
-    """One job's rounds."""
+    def _shorter(self, chunk: Chunk, ticks: int) -> Chunk:
+        """The beginning of it."""
+        shorter = self.course.ahead(ticks) if ticks < chunk.ticks else chunk
+        return chunk if shorter is None else shorter
 
-    def __init__(self, job: Job, ready: Ready) -> None:
-        self.material = material_of(job.work.material, job.physics)
-        self.tick_s = ready.spec.control_period_s
-        self._physics = job.physics
-        self._blank = job.work.blank()
-        self._ready = ready
-        self._kinematics = ready.tools[0].kinematics
+    def _take(self, chunk: Chunk, result: Settled | None = None) -> None:
+        """Go through a window whose forces are known; without a result nothing is cut in it."""
+        first = self.course.tick
+        none = self.bench.no_load
+        load = none if result is None else result.load
+        feedback = self.course.take(chunk, self._acted.then(load) if len(load.cell) else None)
+        until = first + feedback.ticks
+        tool = feedback.actual[:, none.spindle]
+        load = replace(load.before(until), angle=(first + np.arange(len(tool)), tool))
+        if len(load.cell):
+            self.past.append(load.whole())
+        self._acted = self._acted.then(load)
+        self._acted = self._acted.since(until - (_turn(self._acted, SLOWEST) or SLOWEST) - 2 * REACH)
+        if result is not None:
+            self._tail, self.stock = result.tail.since(until), result.stock
 
-    def begun(self, course: Course) -> _State:
-        """The whole blank before the first tick."""
-        none = no_load(self._kinematics, self._physics)
-        cutters = [tool.cutter for tool in self._ready.tools]
-        stock = Stock.of(self._blank, cutters, self._physics.load_resolution_mm)
-        return _State(course=course, stock=stock, cut_s=-1.0, past=(), acted=none, tail=none, expected=none)
+    def _clear(self, chunk: Chunk) -> int:
+        """Ticks at the beginning of a chunk in which nothing is cut."""
+        if len(self._tail.cell):
+            return 0
+        span = self._span(self.course.trial(chunk))
+        tick = self.bench.first_cut(self.stock, int(chunk.tool[0]), span)
+        return chunk.ticks if tick is None else max(tick - span.first - 2, 0)
 
-    def settled(self, state: _State, window: Window) -> _Result:
+    def _settle(self, chunk: Chunk) -> Settled:
         """Go through a window round after round."""
-        agreement, acted, moved = Agreement(), state.expected, list[float]()
-        before: Tools | None = None
-        taken: _Taken | None = None
+        bench, tool = self.bench, int(chunk.tool[0])
+        load, moved = self._guess(chunk), list[float]()
+        before: CutterMotion | None = None
+        step = Relaxation()
+        metal = Removal.none()
         while True:
-            course, mark = self._gone_through(state, window, acted)
-            tape = course.tape(state.course.tick - 1)
-            motions = self._motions(tape, state.acted.then(acted))
-            if before is not None and taken is not None:
-                sizes = {"radius": self._blank.radius, "tick_s": self.tick_s}
-                change, when = change_um([m for _, m in before], [m for _, m in motions], acted.tick, **sizes)
-                moved.append(bound_um(change))
-                if moved[-1] < SETTLED_UM:
-                    break
-                if len(moved) == MOST_ROUNDS - 1:
-                    past = (*state.past, acted.whole())
-                    end = replace(state, course=course, past=past, acted=acted)
-                    hertz = dominant_hz(change, when, self.tick_s)
-                    return _Result(
-                        state=end, rounds=len(moved) + 1, moved_um=tuple(moved), frequency_hz=hertz
+            pressed = self._acted.then(load)
+            feedback = self.course.trial(chunk, pressed if len(load.cell) else None)
+            span = self._span(feedback)
+            give = self._give(pressed, span)
+            motion = bench.motion(tool, span, give)
+            if before is not None:
+                moved.append(self._moved(before, motion, load.tick[load.tick < span.until]))
+                if moved[-1] < SETTLED_UM or len(moved) == MOST_ROUNDS - 1:
+                    mine = metal.of(metal.middle_s < span.until * bench.tick_s)
+                    return Settled(
+                        chunk=chunk,
+                        load=load,
+                        tail=bench.forces(tool, mine, before, span).load,
+                        stock=mine.taken_from(self.stock),
+                        moved_um=tuple(moved),
+                        settled=moved[-1] < SETTLED_UM,
+                        slowest=_slowest(self._told(feedback), load, span),
                     )
-            taken = self._taken(state, window, course, tape, motions)
-            if not len(acted.cell) and not len(taken.caused.cell):
-                break
-            acted = agreement.after(acted, taken.caused).since(state.course.tick)
-            before = motions
-        tick = mark.tick
-        end = _State(
-            course=mark,
-            stock=taken.stock,
-            cut_s=taken.cut_s,
-            past=(*state.past, acted.before(tick).whole()),
-            acted=state.acted.then(acted.before(tick)).since(tick - REACH - 1),
-            tail=taken.tail.since(tick),
-            expected=self._expected(state, window, taken.caused).since(tick),
-            window=window,
-        )
-        return _Result(state=end, rounds=len(moved) + 1, moved_um=tuple(moved))
-
-    def _gone_through(self, state: _State, window: Window, acted: CuttingLoad) -> tuple[Course, Course]:
-        """The course at the end of a window, and where the window's forces are final."""
-        course, load = state.course.fork(), state.acted.then(acted)
-        pressed = load if len(load.cell) else None
-        course.go(until=window.known, load=pressed)
-        mark = course.fork()
-        course.go(until=window.end, load=pressed)
-        return course, course if course.finished else mark
-
-    def _motions(self, tape: Tape, load: CuttingLoad) -> Tools:
-        ticks = ticks_of(tape, self.tick_s)
-        deflection = load.on(ticks, tape.actual[:, self._ready.tool_column]).deflection_um(ticks)
-        on = motions_on(tape, self._ready, deflection)
-        return [(cutter, motion) for _, cutter, motion in on if cutter is not None]
-
-    def _taken(self, state: _State, window: Window, course: Course, tape: Tape, tools: Tools) -> _Taken:
-        """The metal that a window's motion takes away, and the forces of that."""
-        last = None if course.finished else window.until
-        until = math.inf if last is None else (last + 0.5) * self.tick_s
-        fields, now, later, times = [], [], [], [np.zeros(0)]
-        for cutter, motion in tools:
-            field = DepthField(cutter, motion, self._blank.radius, self._blank.z_range)
-            at = np.interp(field.passes.at, np.arange(len(motion.time_s)), motion.time_s)
-            fields.append(field)
-            now.append(np.flatnonzero((at > state.cut_s) & (at <= until)))
-            later.append(np.flatnonzero(at > max(until, state.cut_s)))
-            times.append(at)
-        stock, motions = state.stock.copy(), [motion for _, motion in tools]
-        clock = Clock(
-            tick_s=self.tick_s,
-            tick=ticks_of(tape, self.tick_s),
-            tool_angle_deg=tape.actual[:, self._ready.tool_column],
-        )
-        loads = [state.tail.on(clock.tick, clock.tool_angle_deg)]
-        left = stock
-        for passes in (now, later):
-            metal = cut_off(stock, list(zip(fields, passes, strict=True)), motions)
-            loads.append(
-                cutting_load(
-                    metal,
-                    motions,
-                    kinematics=self._kinematics,
-                    material=self.material,
-                    physics=self._physics,
-                    clock=clock,
+            metal = bench.metal(self.stock, tool, motion, span)
+            found = bench.forces(tool, metal, motion, span).and_also(self._tail)
+            if not len(found.load.cell):
+                return Settled(
+                    chunk=chunk,
+                    load=bench.no_load,
+                    tail=bench.no_load,
+                    stock=self.stock,
+                    moved_um=(),
+                    settled=True,
+                    slowest=1.0,
                 )
-            )
-            if passes is now:
-                left = stock.copy()
-        tail = summed(loads[:2])
-        return _Taken(
-            stock=left,
-            cut_s=until if last is None else _between(np.concatenate(times), until),
-            tail=tail,
-            caused=summed([tail, loads[2]]),
-        )
+            row = int(np.searchsorted(span.tick, span.first))
+            ends = give[row - 1 : row + span.last - span.first]
+            mean = 0.5 * (ends[:-1] + ends[1:])
+            load = balanced(found.before(span.last), self._acted, mean, first=span.first)
+            tried = pressed.on(span.tick[span.core], span.actual[span.core, load.spindle])
+            load = step.towards(tried.since(span.first).before(span.last), load, span, moved)
+            before = motion
 
-    def _expected(self, state: _State, window: Window, caused: CuttingLoad) -> CuttingLoad:
-        """The same forces in the next window, as far as it is like this one and the one before."""
-        last = state.window
-        if last is None or last.until is None or window.until is None:
-            return no_load(self._kinematics, self._physics)
-        ticks = window.until - last.until
-        turned = np.interp([window.until, last.until], *caused.angle)
-        return caused.later(ticks, round((turned[0] - turned[1]) / 360.0))
+    def _span(self, feedback: Feedback) -> Span:
+        tick = self.course.tick
+        tape = self.course.tape(tick - RECENT)
+        return self.bench.span((ticks_of(tape, self.bench.tick_s), tape.actual), feedback, tick)
+
+    def _told(self, feedback: Feedback) -> Floats:
+        """(n + 1,) setpoints of the tool, from the tick before on."""
+        column = self.bench.no_load.spindle
+        return np.concatenate([self.course.tape(self.course.tick - 1).setpoint, feedback.setpoint])[:, column]
+
+    def _give(self, load: CuttingLoad, span: Span) -> Floats:
+        """(m, 3) how far the mounts give way at the rows of a span [µm]; beyond it they stand still."""
+        core = span.tick[span.core]
+        known = load.on(core, span.actual[span.core, load.spindle]).deflection_um(core)
+        rows = np.searchsorted(core, np.minimum(span.tick, span.last - 2))
+        return known[np.minimum(rows, len(core) - 1)]
+
+    def _moved(self, before: CutterMotion, after: CutterMotion, ticks: NDArray[np.int64]) -> float:
+        """By how much the part's surface has moved at most [µm]."""
+        sizes = {"radius": self.bench.blank.radius, "tick_s": self.bench.tick_s}
+        return bound_um(change_um([before], [after], ticks, **sizes)[0])
+
+    def _guess(self, chunk: Chunk) -> CuttingLoad:
+        """What acted a turn of the tool ago, else what is left of metal that is cut."""
+        back = _turn(self._acted, SLOWEST)
+        if not back:
+            return self._tail
+        ticks, angle = self._acted.angle
+        turns = round((angle[-1] - np.interp(ticks[-1] - back, ticks, angle)) / 360.0)
+        later = self._acted.later(back, turns)
+        return later.since(self.course.tick).before(chunk.first_tick + chunk.ticks + 2 * REACH)
 
 
-def _within(finer: list[Window], tick: int, window: Window) -> list[Window]:
-    """Those that end between a tick and the end of a window."""
-    last = math.inf if window.until is None else window.until
-    return [one for one in finer if one.known > tick and one.until is not None and one.until < last]
+def _turn(load: CuttingLoad, most: int) -> int:
+    """Ticks since the tool was a turn behind, or ahead; 0 where that is unknown or longer ago."""
+    ticks, angle = load.angle
+    if not len(ticks):
+        return 0
+    before = np.flatnonzero(np.abs(angle - angle[-1]) >= 360.0)
+    back = int(ticks[-1] - ticks[before[-1]]) if len(before) else 0
+    return back if back < most else 0
 
 
-def _between(times: Floats, instant: float) -> float:
-    """A time near an instant at which no pass is in its middle: the next motion has it a little elsewhere."""
-    before, after = times[times <= instant], times[times > instant]
-    if not len(before) or not len(after):
-        return instant
-    return 0.5 * (float(before.max()) + float(after.min()))
-
-
-def _unstable(result: _Result, session: Session) -> Alarm:
-    recording = session.recording
-    rounds = ", ".join(f"{one:.3g}" for one in result.moved_um)
-    block = recording.blocks[int(recording.block[-1])]
-    acted = result.state.acted
-    torque = float(np.abs(acted.whole().axes[:, acted.spindle]).max(initial=0.0))
-    return Alarm(
-        number="HT9040",
-        found=f"up to {recording.time_s[-1]:.3f} s the part's surface still moved by "
-        f"{result.moved_um[-1]:.3g} µm in round {result.rounds}, most at {result.frequency_hz:.4g} Hz "
-        f"(by round: {rounds} µm), with up to {torque:.3g} N m on the tool",
-        span=Span(file=block.file, line=block.line),
-    )
+def _slowest(told: Floats, load: CuttingLoad, span: Span) -> float:
+    """Speed of the tool over that which it is `told` (n + 1,) [deg], from the tick before the span on, where
+    metal is cut."""
+    rows = np.searchsorted(span.tick, np.arange(span.first - 1, span.first - 1 + len(told)))
+    way, made = np.diff(told), np.diff(span.actual[rows, load.spindle])
+    cuts = np.isin(span.first + np.arange(len(way)), load.tick) & (np.abs(way) > 0.0)
+    return float((made[cuts] / way[cuts]).min(initial=1.0))

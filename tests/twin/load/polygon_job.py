@@ -2,12 +2,22 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from controller.language.source import parse_program
 from twin.course import Course
+from twin.cutters.cutter import Cutter
+from twin.cutting.blank import Blank
+from twin.cutting.field import DepthField
+from twin.cutting.motion import CutterMotion
 from twin.job import read_job
-from twin.load.rounds import LoadedRun, run_under_load
-from twin.load.windows import SHORTEST
+from twin.load.forces import Clock
+from twin.load.loaded import LoadedRun, run_under_load
+from twin.load.removal import Removal, removal
+from twin.load.rounds import TICKS
+from twin.load.stock import Stock
 from twin.presets import cutters_of, settings_of
+from twin.recording import Recording
 from twin.session import Session, begin_program, session_of
 from twin.setup import Ready, make_ready
 
@@ -40,6 +50,18 @@ M30
 """
 
 
+def metal_of(blank: Blank, tool: tuple[Cutter, CutterMotion], resolution_mm: float | None = None) -> Removal:
+    """All metal that one tool takes off a whole blank."""
+    cutter, motion = tool
+    stock = Stock.of(blank, [cutter], resolution_mm)
+    return removal(stock, DepthField(cutter, motion, blank.radius, blank.z_range), motion)
+
+
+def clock_of(recording: Recording) -> Clock:
+    tick = np.rint(recording.time_s / 1e-3).astype(np.int64) - 1
+    return Clock(tick_s=1e-3, tick=tick, tool_angle_deg=recording.tool_angle_deg)
+
+
 class Polygon:
     """The job, made ready."""
 
@@ -61,6 +83,5 @@ class Polygon:
         course.go(load=load)
         return session_of(course, self.ready, load)
 
-    def loaded(self, *, ideal: bool = True, shortest: int = SHORTEST) -> LoadedRun:
-        course, outline = self.begin(ideal=ideal), self.begin()
-        return run_under_load(self.job, self.ready, course, outline=outline, shortest=shortest)
+    def loaded(self, *, ideal: bool = True, ticks: int = TICKS) -> LoadedRun:
+        return run_under_load(self.job, self.ready, self.begin(ideal=ideal), ticks=ticks)

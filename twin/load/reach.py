@@ -1,0 +1,150 @@
+"""Which rays of the stock the edges of some passes can come to, and about when."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.cutters.cutter import Cutter
+from twin.cutting.field import DepthField
+from twin.cutting.motion import CutterMotion
+from twin.cutting.passes import REACH
+from twin.load.ray_ends import SLACK
+from twin.load.stock import Stock
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+ROUNDING = 1e-9
+"""[rad]"""
+FASTEST = 0.6
+"""share of the edge's speed that the stock may have for its meeting to be foretold"""
+
+
+def at_samples(motion: CutterMotion, values: Floats, sample: Floats) -> Floats:
+    """Values (n, ...) of a motion at fractional samples (m,)."""
+    cell = np.clip(sample.astype(np.int64), 0, len(motion.time_s) - 2)
+    share = (sample - cell).reshape(-1, *[1] * (values.ndim - 1))
+    return values[cell] + share * (values[cell + 1] - values[cell])
+
+
+def may_meet(cutter: Cutter, motion: CutterMotion, stock: Stock, rows: slice) -> bool:
+    """Whether any edge may be in metal between two rows of a motion.
+
+    Stock stands at least `nearest` away from the tool's axis along the way to the work; so edges meet it only
+    within acos(nearest / radius) of that way.
+    """
+    if cutter.revolved or motion.lean is not None or not np.allclose(motion.basis[0], [-1.0, 0.0, 0.0]):
+        return True
+    high = float(stock.end.max(initial=0.0))
+    nearest = float(motion.centre[rows, 0].min()) - high - _clamped(motion, stock)
+    if nearest > cutter.radius:
+        return False
+    half = math.acos(max(nearest / cutter.radius, -1.0)) + abs(cutter.twist) * 2.0 * _farthest(stock)
+    angle = motion.tool_angle[rows]
+    if half + float(np.ptp(angle)) / 2.0 >= math.pi:
+        return True
+    middle = 0.5 * float(angle.min() + angle.max()) + cutter.gash_angle
+    return bool((np.cos(middle) > math.cos(half + 0.5 * float(np.ptp(angle)))).any())
+
+
+def _farthest(stock: Stock) -> float:
+    """From the origin, where stock stands [mm]."""
+    return math.hypot(float(stock.end.max(initial=0.0)), float(np.abs(stock.z).max(initial=0.0)))
+
+
+def _clamped(motion: CutterMotion, stock: Stock) -> float:
+    """How far its clamping shifts any of the stock at most [mm]."""
+    turned = float(np.linalg.norm(motion.mount.rotation - np.eye(3), 2))
+    return turned * _farthest(stock) + float(np.linalg.norm(motion.mount.translation))
+
+
+class Reach:
+    """The edges of one tool's passes, seen from the stock; `between` two times [s] metal is asked for."""
+
+    def __init__(
+        self, field: DepthField, motion: CutterMotion, stock: Stock, between: tuple[float, float]
+    ) -> None:
+        self._field, self._motion, self._stock = field, motion, stock
+        p = field.passes
+        self._between = between
+        self._work = at_samples(motion, motion.work_angle, p.at)
+        self._centre = at_samples(motion, motion.centre, p.at)
+        self._time = at_samples(motion, motion.time_s, p.at)
+        cell = np.minimum(p.at.astype(np.int64), len(motion.time_s) - 2)
+        self._rate = (np.diff(motion.tool_angle) / np.diff(motion.time_s))[cell]
+        # `at` stands at the end of a run of one-way turning where the edge would point to the work after it
+        standing = np.interp(p.at, np.arange(len(motion.time_s)), motion.tool_angle)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self._time = self._time + np.nan_to_num((p.angle - standing) / self._rate)
+        self._spread = np.where(p.slant < FASTEST, p.slant / (1.0 - np.minimum(p.slant, FASTEST)), np.inf)
+        self._shift = _clamped(motion, stock)
+        self._along = abs(field.cutter.twist) * 2.0 * _farthest(stock)
+
+    def passes(self) -> Ints:
+        """Passes that may meet stock in the time asked for."""
+        index = np.arange(self._field.passes.count)
+        low, high = self._between
+        if not len(index) or not (math.isfinite(low) or math.isfinite(high)):
+            return index
+        nearest = self._nearest(index)
+        arc = np.arccos(np.clip(nearest / self._field.cutter.radius, -1.0, 1.0)) + self._along
+        with np.errstate(divide="ignore", invalid="ignore"):
+            late = np.nan_to_num(arc * (1.0 + self._spread) / np.abs(self._rate), nan=np.inf)
+        return np.flatnonzero((self._time + late > low) & (self._time - late < high))
+
+    def pairs(self, passes: Ints) -> tuple[Ints, Ints]:
+        """Pairs of rays and passes whose edges come to the rays' ends or further in, in that time."""
+        field, motion, stock, p = self._field, self._motion, self._stock, self._field.passes
+        standing = self._facing(passes)
+        x, y, z = motion.mount.moved(stock.points(standing, stock.end[standing])).T
+        towards, across = motion.basis[0], motion.basis[1]
+        radius = field.cutter.radius
+        rays: list[Ints] = [np.zeros(0, np.int64)]
+        for index in passes:
+            cos, sin = math.cos(self._work[index]), math.sin(self._work[index])
+            middle = self._centre[index]
+            off_x, off_y, off_z = x * cos - y * sin - middle[0], x * sin + y * cos - middle[1], z - middle[2]
+            a = off_x * towards[0] + off_y * towards[1] + off_z * towards[2]
+            b = off_x * across[0] + off_y * across[1] + off_z * across[2]
+            rho, turn = np.hypot(a, b), np.arctan2(b, a)
+            # the sooner or later the edge comes, the further the stock has gone on
+            way = p.travel[index] * np.minimum(np.abs(turn) / REACH, 1.0) + SLACK
+            near = rho < radius + way
+            rays.append(standing[near & self._timely(index, turn, radius + way - rho)])
+        return np.concatenate(rays), np.repeat(passes, [len(one) for one in rays[1:]])
+
+    def _timely(self, index: int, turn: Floats, deep: Floats) -> NDArray[np.bool_] | bool:
+        """Which rays (n,), `turn` [rad] from where the edge points to the work, it may meet in the time
+        asked for; what it takes of them is at most twice as long as they stand `deep` in its way."""
+        (low, high), rate = self._between, abs(float(self._rate[index]))
+        if not rate or not (math.isfinite(low) or math.isfinite(high)):
+            return True
+        meets = self._time[index] + turn / self._rate[index]
+        off = np.abs(turn) * self._spread[index] + self._along + 4.0 * deep / self._field.cutter.radius
+        return (meets + off / rate > low) & (meets - off / rate < high)
+
+    def _nearest(self, passes: Ints) -> Floats:
+        """(n,) how near to the tool's axis, along the way to the work, stock can stand in each pass [mm]."""
+        if not np.allclose(self._motion.basis[0], [-1.0, 0.0, 0.0]):
+            return np.full(len(passes), -np.inf)
+        high = float(self._stock.end.max(initial=0.0))
+        travel = self._field.passes.travel[passes]
+        return self._centre[passes, 0] - travel - high - SLACK - self._shift
+
+    def _facing(self, passes: Ints) -> Ints:
+        """Rays that still stand, and on the side of the work where some passes' edges can come to them.
+
+        Metal at an angle φ from the tool stands at most its radius · cos φ nearer to it, and what the
+        clamping shifts.
+        """
+        stock, work = self._stock, self._work[passes]
+        high = float(stock.end.max(initial=0.0))
+        least = float(self._nearest(passes).min(initial=np.inf)) + high - self._field.cutter.radius
+        standing = stock.end > stock.inner
+        if least > 0.0:
+            half = math.acos(min(least / high, 1.0)) + 0.5 * float(np.ptp(work)) + ROUNDING
+            middle = -0.5 * float(work.min() + work.max())
+            if half < math.pi:
+                standing &= stock.cos * math.cos(middle) + stock.sin * math.sin(middle) >= math.cos(half)
+        return np.flatnonzero(standing)
