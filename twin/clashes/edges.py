@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 
 GRAIN = 0.25
 """[mm] between points of an edge, and how far inside its outline they are looked for"""
+INSIDE = 1e-6
+"""[mm] under the tips, where an edge is not missed for rounding"""
 MOST = 3000
 """points of one edge"""
 AROUND = 24
@@ -58,8 +60,9 @@ def edge_points(cutter: Cutter, low: float, high: float) -> Floats:
     if high <= low:
         return np.zeros((0, 2))
     grain = min(GRAIN, 0.25 * profile.half_width)
+    top = profile.tip - INSIDE
     s, rho = np.meshgrid(
-        np.arange(low, high + grain, grain), np.arange(profile.tip, inner - grain, -grain), indexing="ij"
+        np.arange(low, high + grain, grain), np.arange(top, inner - grain, -grain), indexing="ij"
     )
     s, rho = s.ravel(), rho.ravel()
     depth, _, _ = profile.depth(s, rho)
