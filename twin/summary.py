@@ -22,6 +22,15 @@ from twin.sync import Spectrum
 Floats = NDArray[np.float64]
 
 
+def _drive_limits(outcome: Outcome) -> dict[str, float]:
+    """What every drive has against cutting forces, by axis letter [N, N m]; nothing without them."""
+    if outcome.loaded is None:
+        return {}
+    drives = outcome.ready.driven.drives()
+    letters = outcome.session.recording.axes
+    return {letter: drive.force_limit for letter, drive in zip(letters, drives, strict=True)}
+
+
 def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object]) -> ReportData:
     """Everything that the report shows; `deviation_um` (n,) of the part's vertices."""
     remains = outcome.cut.remains
@@ -39,6 +48,7 @@ def report_data(outcome: Outcome, deviation_um: Floats, origin: dict[str, object
                 outcome.loaded, outcome.session.recording.axes[outcome.ready.tool_column]
             )
         ),
+        drive_limits=_drive_limits(outcome),
         messages=messages(outcome),
         contact=contact_of(outcome),
         part=Part(

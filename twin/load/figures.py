@@ -54,12 +54,16 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
         ("Energy", f"{figures['energy_j'] / 1e3:.3g} kJ for {figures['removed_mm3']:.4g} mm³"),
         ("Mean power", f"{figures['mean_power_w']:.0f} W"),
         ("Largest power", f"{figures['largest_power_w']:.0f} W"),
-        ("Largest torque", f"{figures[f'largest_{tool}']:.3g} N m at the tool"),
+        (
+            "Torque at the tool",
+            f"{loaded.mean_torque:.3g} N m, at most {figures[f'largest_{tool}']:.3g} of the drive's "
+            f"{loaded.torque_limit:.3g}",
+        ),
         ("Give", f"up to {figures['largest_deflection_um']:.3g} µm"),
         (
             "Rounds",
-            f"at most {loaded.rounds} in each of {loaded.windows} windows, "
-            f"the last moved {figures['moved_um']:.2g} µm{frequency}",
+            f"{loaded.mean_rounds:.2g} in a window, at most {loaded.rounds}; {loaded.windows} windows, "
+            f"the last round moved {figures['moved_um']:.2g} µm{frequency}",
         ),
     ]
 

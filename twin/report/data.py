@@ -1,5 +1,6 @@
 """All that a report shows, as plain values: the caller fills it in, `write_report` only lays it out."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePath
@@ -160,6 +161,8 @@ class ReportData:
 
     load: tuple[Row, ...] = ()
     """the cutting forces in figures; their course stands in the recording"""
+    drive_limits: Mapping[str, float] = field(default_factory=dict)
+    """by axis letter, what its drive has against them [N, N m]; nothing for axes that no force moves"""
 
     contact: Contact | None = None
     """where the run ended in a collision"""

@@ -45,7 +45,7 @@ def fly(synthetic):
         depth += step
     n = 720 * len(STEPS)
     motion = CutterMotion(
-        time_s=1e-3 * np.arange(1, n + 1),
+        time_s=np.linspace(1e-3, 1e-3 * n, n),
         work_angle=np.zeros(n),
         tool_angle=np.concatenate(tool),
         centre=np.column_stack([np.concatenate(x), np.zeros(n), np.full(n, -1.5)]),

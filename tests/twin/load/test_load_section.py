@@ -46,3 +46,16 @@ def test_power_forces_and_give_are_drawn(tmp_path):
     np.testing.assert_array_equal(saved["load_Y"], recording.load.axes[:, 2])
     assert saved["deflection_um"].shape == (len(recording.time_s), 3)
     assert load_chart(replace(recording, load=None), ROTARY) is None
+
+
+def test_what_a_drive_has_is_drawn_where_forces_come_near_it(tmp_path):
+    physics = "cutting_load = true\nload_resolution_mm = 0.5\nk_c11 = 200.0"
+    loaded = Polygon(tmp_path, physics=physics).loaded()
+    recording = loaded.session.recording
+    assert recording.load is not None
+    most = float(np.abs(recording.load.axes[:, 2]).max())
+    for limit, drawn in ((0.5 * most, True), (1.5 * most, True), (2.0 * most, False)):
+        chart = load_chart(recording, ROTARY, {"Y": limit})
+        assert chart is not None
+        assert ("load-Y-limit" in chart) is drawn
+        assert "load-X-limit" not in chart

@@ -1,5 +1,7 @@
 """What the cut does to the machine over time: power, torques of the spindles, forces on the slides."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +19,8 @@ GUTTER = 13.5
 TALL, GAP = 20.0, 4.5
 """of each plot, and below it [mm]"""
 TOP = 6.0
+NEAR = 1.6
+"""times the largest value that a limit may be, to be drawn"""
 TEETH = 0.25
 """[s] about the largest power that the right-hand plots show"""
 
@@ -27,10 +31,17 @@ class _Row:
     label: str
     values: Floats
     """(n,)"""
+    limit: float = math.inf
+    """to either side; drawn where values come near it"""
 
 
-def load_chart(recording: Recording, rotary: frozenset[str]) -> Markup | None:
-    """SVG of power and forces: the whole run, and tooth by tooth about the largest power; None without."""
+def load_chart(
+    recording: Recording, rotary: frozenset[str], limits: Mapping[str, float] | None = None
+) -> Markup | None:
+    """SVG of power and forces: the whole run, and tooth by tooth about the largest power; None without.
+
+    `limits`: what the drives have against them, by axis letter [N, N m].
+    """
     load = recording.load
     if load is None or not load.power_w.any():
         return None
@@ -38,7 +49,8 @@ def load_chart(recording: Recording, rotary: frozenset[str]) -> Markup | None:
     for k, letter in enumerate(recording.axes):
         if load.axes[:, k].any():
             unit = "N m" if letter in rotary else "N"
-            rows.append(_Row(f"load-{letter}", f"{letter}  [{unit}]", load.axes[:, k]))
+            limit = (limits or {}).get(letter, math.inf)
+            rows.append(_Row(f"load-{letter}", f"{letter}  [{unit}]", load.axes[:, k], limit))
     rows.append(_Row("give", "give  [µm]", np.linalg.norm(load.deflection_um, axis=1)))
     drawing = Drawing("load", WIDTH, TOP + len(rows) * (TALL + GAP) + 4.5)
     time = recording.time_s
@@ -55,6 +67,11 @@ def load_chart(recording: Recording, rotary: frozenset[str]) -> Markup | None:
         for number, row in enumerate(rows):
             values = row.values[part]
             low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
+            bounds = []
+            if row.limit < NEAR * high:
+                bounds, high = [row.limit], max(high, row.limit)
+            if -row.limit > NEAR * low:
+                bounds, low = [*bounds, -row.limit], min(low, -row.limit)
             margin = 0.06 * (high - low) or 1.0
             plot = Plot(
                 drawing,
@@ -67,6 +84,8 @@ def load_chart(recording: Recording, rotary: frozenset[str]) -> Markup | None:
             )
             plot.grid(most=4)
             plot.level(0.0, "zero")
+            for bound in bounds:
+                plot.level(bound, "limit", id=f"{row.name}-limit-{int(left)}")
             plot.curve(*envelope(at, values), "error", id=f"{row.name}-{int(left)}")
             plot.y_axis(row.label, most=4, room=GUTTER - 2.2)
             if number == len(rows) - 1:

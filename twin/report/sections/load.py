@@ -7,7 +7,9 @@ from twin.report.sections.section import Section, Tab
 
 def load_section(report: ReportData) -> Section | None:
     """Draw power and forces; None for a run without cutting forces, or one that cut nothing."""
-    chart = load_chart(report.recording, report.rotary_axes) if report.recording else None
+    chart = (
+        load_chart(report.recording, report.rotary_axes, report.drive_limits) if report.recording else None
+    )
     if chart is None:
         return None
     return Section(
