@@ -113,8 +113,7 @@ def run_under_load(
     )
     if last is None or (last.settled and not last.stalled):
         return run
-    # forces by an angle that hardly moves on have no rounds that come together
-    stalled = last.stalled or _asked(run, last) > run.torque_limit
+    stalled = last.stalled and (last.settled or _asked(run, last) > run.torque_limit)
     run = replace(run, stalled=True) if stalled else replace(run, frequency_hz=_frequency(run))
     alarm = _stalled(run, last) if stalled else _unstable(run, last)
     return replace(run, session=replace(session, alarms=(*session.alarms, alarm)))

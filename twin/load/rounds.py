@@ -43,6 +43,8 @@ RECENT = 8
 """[ticks] of the motion before that a window asks for"""
 STOPPED = 0.02
 """of the speed that it is told, below which a tool in metal has stopped"""
+STOPPING = 0.5
+"""the same where rounds do not settle, for forces by an angle that hardly moves on do not"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +72,7 @@ class Settled:
     @property
     def stalled(self) -> bool:
         """Whether the tool has come to rest in the metal."""
-        return self.slowest < STOPPED
+        return self.slowest < (STOPPED if self.settled else STOPPING)
 
 
 class Rounds:
