@@ -194,6 +194,8 @@ def test_unknown_models_are_answered_with_the_known_ones() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
+        ('<inertial mass="40"', '<inertial mass="-5"', "body 'carrier' has a mass of -5 kg"),
+        ('<inertial mass="2600"', '<inertial mass="0"', "body 'bed' has a mass of 0 kg"),
         ('<joint name="x_slide"', '<joint name="cross_slide"', "has no joint named 'x_slide' .it has: work_"),
         (
             '<motor name="x_slide"',
@@ -202,7 +204,8 @@ def test_unknown_models_are_answered_with_the_known_ones() -> None:
         ),
         ('<body name="carrier"', '<body name="head"', "has no body named 'carrier'"),
         ('<key name="home"', '<key name="start"', "has no keyframe named 'home' .it has: start"),
-        ('mass="150"', 'mass="0"', "does not compile"),
+        ('mass="150"', 'mass="0"', "body 'z_slide' has a mass of 0 kg"),
+        ('diaginertia="4 14 11"', 'diaginertia="4 14 40"', "does not compile"),
         ("<worldbody>", "<worldbody", "cannot read machine model"),
     ],
 )

@@ -121,6 +121,7 @@ def assemble(
         mjcf = mujoco.MjSpec.from_file(str(spec.folder / "scene.xml"))
     except ValueError as cause:
         raise InputError(f"cannot read machine model {spec.name!r}: {cause}", place=spec.place) from cause
+    _require_masses(mjcf, spec)
     _require_parts(mjcf, spec, setup)
     _clamp_unused(mjcf, spec, setup)
     _apply_drives(mjcf, spec, setup)
@@ -135,10 +136,10 @@ def assemble(
     if stylus is not None:
         mount_stylus(mjcf, stylus)
     mjcf.option.timestep = spec.physics_step_s
-    physics = mjcf.copy()
-    physics.discard_visual()
-    physics.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR | mujoco.mjtDisableBit.mjDSBL_ISLAND
     try:
+        physics = mjcf.copy()  # which compiles, too
+        physics.discard_visual()
+        physics.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR | mujoco.mjtDisableBit.mjDSBL_ISLAND
         model = physics.compile()
         joints_alone = bare(physics, model)
     except ValueError as cause:
@@ -168,6 +169,17 @@ def _require_sizes(work: WorkMount, tool: ToolMount, zero: MachineZero) -> None:
     for name, value in {"swivel": tool.carrier_swivel_deg, "X": zero.x_mm, "Z": zero.z_mm}.items():
         if not math.isfinite(value):
             raise InputError(f"{name} of the set-up is {value}: expected a finite number")
+
+
+def _require_masses(mjcf: mujoco.MjSpec, spec: MachineSpec) -> None:
+    """Raise InputError for a mass that is not above 0; MuJoCo asks that of all that moves together alone."""
+    for body in mjcf.bodies[1:]:  # the first one is the world
+        if body.explicitinertial and not body.mass > 0.0:
+            raise InputError(
+                f"machine model {spec.name!r}: body {body.name!r} has a mass of {body.mass:g} kg",
+                place=spec.place,
+                remedy="above 0",
+            )
 
 
 def _require_parts(mjcf: mujoco.MjSpec, spec: MachineSpec, setup: Setup) -> None:
