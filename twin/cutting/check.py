@@ -139,6 +139,8 @@ def missed(
     value = sweep.deepest(points[asked], leaf[asked], leaves.tangents).depth
     contrary = (value > 0) != removed[0, asked]
     points, value = points[asked[contrary]], value[contrary]
+    if not len(points):
+        return []
     from scipy.spatial import KDTree  # noqa: PLC0415 - half a second to load, and not every cut needs it
 
     cells = np.array(grid.cell_mm)[[0, 0, 2]]

@@ -18,6 +18,7 @@ from twin.inspection.involute import geometry
 from twin.inspection.judge_gear import judge_gear
 from twin.inspection.judge_polygon import judge_polygon
 from twin.inspection.nominal import GearNominal, Nominal, PolygonNominal
+from twin.inspection.polygon import measure_polygon
 from twin.inspection.recognise import MOST_SIDES, Form, Outline, recognise
 from twin.inspection.result import Inspection, Verdict
 from twin.inspection.solid import Solid, check_solid
@@ -147,9 +148,6 @@ def _inspect_gear(
 
 
 def _inspect_polygon(solid: Solid, outline: Outline, nominal: PolygonNominal | None) -> Inspection:
-    # with scipy's convex hull: half a second that a gear need not wait for
-    from twin.inspection.polygon import measure_polygon  # noqa: PLC0415
-
     if nominal is not None:
         if outline.count != nominal.number_of_sides:
             return _nothing(

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import Legendre
-from scipy.spatial import ConvexHull
 
 from twin.errors import PartError
 from twin.inspection.facets import chord_depth_um
+from twin.inspection.hull import hull
 from twin.inspection.nominal import PolygonNominal
 from twin.inspection.recognise import Outline
 from twin.inspection.result import Face, PolygonResult
@@ -276,7 +276,7 @@ def _corner_radii(points: Floats, directions: Floats) -> Floats:
 
 def _caliper(points: Floats, directions: Floats) -> list[float]:
     """Return the least width [mm] parallel jaws read near each direction: one lies on an edge of the hull."""
-    corners = points[ConvexHull(points).vertices]  # counter-clockwise
+    corners = points[hull(points)]
     edge = np.roll(corners, -1, axis=0) - corners
     normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.hypot(*edge.T)[:, None]
     angle = np.arctan2(normal[:, 1], normal[:, 0])

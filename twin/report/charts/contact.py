@@ -3,6 +3,7 @@
 import numpy as np
 from markupsafe import Markup
 
+from twin.inspection.hull import hull
 from twin.inspection.result import Floats
 from twin.report.data import Contact
 from twin.report.drawing import Drawing, Plot
@@ -69,6 +70,4 @@ def _outline(points: Floats) -> Floats:
     """(k, 2) the hull of points (n, 2), which may lie on a line."""
     if np.ptp(points, axis=0).min() < SAME:
         return points[[int(np.argmin(points.sum(axis=1))), int(np.argmax(points.sum(axis=1)))]]
-    from scipy.spatial import ConvexHull  # noqa: PLC0415 - half a second to load, and contacts are rare
-
-    return points[ConvexHull(points).vertices]
+    return points[hull(points)]
