@@ -88,7 +88,7 @@ def _job(tables: Tables) -> Job:
         program=_program(tables),
         nominal=nominal,
         inspection=tables.table(InspectionTable, ("inspection",)),
-        faults=faults_of(tables, tools),
+        faults=faults_of(tables, work, tools),
         probe=probe_of(tables, work, tools),
         physics=physics_of(tables, work, tools),
         events=_events(tables),

@@ -58,9 +58,17 @@ def dressed(tables: Tables, tools: dict[int, Tool | GapWheel], nominal: Nominal 
     return done
 
 
-def faults_of(tables: Tables, tools: Mapping[int, Tool | GapWheel]) -> Faults:
-    """[faults], held against the tools."""
+def faults_of(tables: Tables, work: WorkTable, tools: Mapping[int, Tool | GapWheel]) -> Faults:
+    """[faults], held against the blank and the tools."""
     faults = tables.table(Faults, ("faults",))
+    radius = work.blank().radius
+    if faults.work_eccentricity_mm >= radius:
+        tables.fail(
+            ("faults", "work_eccentricity_mm"),
+            f"faults.work_eccentricity_mm {faults.work_eccentricity_mm:g}: the spindle's axis "
+            "would pass the blank by",
+            f"below {radius:g}",
+        )
     hobs = [tool for tool in tools.values() if isinstance(tool, Hob)]
     raw = tables.raw(("faults",))
     if "slide_tilt_deg" in raw:

@@ -29,6 +29,7 @@ def refused(tmp_path, capsys, scene, lines):
     ("line", "words"),
     [
         ("work_eccentricity_mm = -0.1", ["faults.work_eccentricity_mm", ">= 0"]),
+        ("work_eccentricity_mm = 1e3", ["faults.work_eccentricity_mm", "pass the blank by", "below"]),
         ("work_eccentricity_mm = nan", ["work_eccentricity_mm", "finite"]),
         ("work_tilt_deg = 45.0", ["faults.work_tilt_deg", "< 10"]),
         ('work_tilt_deg = "much"', ["faults.work_tilt_deg", "float"]),
