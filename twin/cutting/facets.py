@@ -4,16 +4,14 @@ What stands too far off is divided at the worst place of its sides (`sides.py`),
 surface, or onto both bites where two meet. So ridges are cut along, facet by facet.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.blank import Blank
 from twin.cutting.dual import Surface
-from twin.cutting.landing import SETTLED, Ground, between, newton
+from twin.cutting.landing import Ground, newton
 from twin.cutting.parting import parted
-from twin.cutting.planes import onto_corners, onto_edges
+from twin.cutting.planes import onto_edges
 from twin.cutting.sides import Mesh, Sides, Worst, lengths, sides_of, worst_of
 
 Floats = NDArray[np.float64]
@@ -21,21 +19,17 @@ Ints = NDArray[np.int64]
 
 INWARDS = 1.4
 """Error amid a facet against the largest of its sides: on an evenly curved surface 4/3."""
-HIDDEN = 0.5
+HIDDEN = 2.0 / 3.0
 """Share of what is aimed at by which metal may stand out amid a facet: a peak is higher than its middle."""
 VOLUME = 0.7e-4
 """Share of the part's volume that may lie between its facets and the cut"""
 SAMPLED = 4000
 """points of facets that tell it"""
-BETTER = 0.7
-"""Share of its error that dividing a side leaves at most where that helps"""
-VAIN = 5
-"""times running that it does not, after which it is left as it is and told"""
+GROWTH = 1.5
+"""Times as many sides to divide as in the round before: then dividing them settles nothing"""
 STRAYED = 2.0
 """Times its distance from the cut by which a point is moved to where two bites meet"""
-WALL = 3.0
-"""Cells that a wall may stand out of a side that runs through it"""
-ROUNDS = 14
+ROUNDS = 8
 """of division"""
 SHORTEST = 2e-3
 """[mm] of a side that is divided no more"""
@@ -51,20 +45,15 @@ def divided(
     finest block that each vertex comes from.
     """
     inside = blank.contains(surface.vertices)
-    was, vain = np.full(len(leaf), np.inf), np.zeros(len(leaf), dtype=np.int64)
-    mesh = Mesh(surface.vertices, surface.faces, surface.bite, leaf, inside, was, vain)
-    mesh = _kept(ground, mesh, blank, limit)
-    off = abs(_between(ground, mesh, limit))
+    mesh = _kept(ground, Mesh(surface.vertices, surface.faces, surface.bite, leaf, inside), blank, limit)
+    off = abs(_between(ground, mesh))
     if off > VOLUME * volume > 0.0:
         mesh = _kept(ground, mesh, blank, limit * VOLUME * volume / off)
     return Surface(mesh.vertices, mesh.faces, mesh.bite)
 
 
-def _between(ground: Ground, mesh: Mesh, limit: float) -> float:
-    """Volume between facets and cut [mm³], from random points of the facets; + = the mesh stands too deep.
-
-    What stands further off than `limit` [mm] did not settle: it is not mended by dividing the rest.
-    """
+def _between(ground: Ground, mesh: Mesh) -> float:
+    """Volume between facets and cut [mm³], from random points of the facets; + = the mesh stands too deep."""
     faces = mesh.faces[mesh.cut_in(mesh.faces)]
     if not len(faces):
         return 0.0
@@ -73,14 +62,13 @@ def _between(ground: Ground, mesh: Mesh, limit: float) -> float:
     rng = np.random.default_rng(2)
     row = np.minimum(np.searchsorted(area, area[-1] * rng.random(SAMPLED)), len(faces) - 1)
     points = np.einsum("nc,ncx->nx", rng.dirichlet(np.ones(3), SAMPLED), mesh.vertices[faces[row]])
-    depth = ground.field(points, mesh.leaf[faces[row, 0]]).depth
-    return float(area[-1] * np.where(np.abs(depth) < limit, depth, 0.0).mean())
+    return float(area[-1] * ground.field(points, mesh.leaf[faces[row, 0]]).depth.mean())
 
 
 def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
     """The mesh with facets within `limit` [mm] of the cut."""
     asked = np.arange(len(mesh.faces))
-    aim, first = limit / INWARDS, 0
+    aim, first, before = limit / INWARDS, 0, np.inf
     for _ in range(ROUNDS):
         faces = mesh.faces[asked]
         faces = faces[mesh.cut_in(faces)]
@@ -93,20 +81,13 @@ def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
         calm = ~far[sides.of_face].any(axis=1)
         far[_bumpy(ground, mesh, faces[calm], Sides(sides.ends, sides.of_face[calm]), worst, aim=aim)] = True
         far &= lengths(mesh.vertices, sides.ends) > SHORTEST
-        vain = _vain(mesh, sides.ends, worst)
-        far &= vain < VAIN
-        if not far.any():
+        # what does not settle, as corners of one bite between its own faces, is left and told
+        if not 0 < far.sum() < GROWTH * before:
             break
+        before = far.sum()
         first = len(mesh.vertices)
-        mesh, asked = _split(ground, mesh, blank, _Divided.of(faces, sides, far, vain), worst.of(far))
+        mesh, asked = _split(ground, mesh, blank, sides.ends[far], worst.of(far))
     return mesh
-
-
-def _vain(mesh: Mesh, ends: Ints, worst: Worst) -> Ints:
-    """How many times running dividing sides (n, 2) and what they came from made nothing better."""
-    # the newer end divided what the side is a part of, or ends at
-    last = ends[:, 1]
-    return np.where(worst.error > BETTER * mesh.was[last], mesh.vain[last] + 1, 0)
 
 
 def _bumpy(ground: Ground, mesh: Mesh, faces: Ints, sides: Sides, worst: Worst, *, aim: float) -> Ints:
@@ -116,47 +97,21 @@ def _bumpy(ground: Ground, mesh: Mesh, faces: Ints, sides: Sides, worst: Worst, 
     """
     around = np.concatenate([mesh.bite[faces], worst.bites[sides.of_face].reshape(-1, 6)], axis=1)
     rows = np.flatnonzero((around != around[:, :1]).any(axis=1))
-    found = ground.field(mesh.vertices[faces[rows]].mean(axis=1), mesh.leaf[faces[rows, 0]])
-    depth, alone = found.depth, (found.bite[:, None] != around[rows]).all(axis=1)
-    own = sides.of_face[rows[(depth > np.where(alone, HIDDEN, 1.0) * aim) | (depth < -HIDDEN * aim)]]
+    depth = ground.field(mesh.vertices[faces[rows]].mean(axis=1), mesh.leaf[faces[rows, 0]]).depth
+    own = sides.of_face[rows[(depth > aim) | (depth < -HIDDEN * aim)]]
     length = lengths(mesh.vertices, sides.ends[own.reshape(-1)]).reshape(own.shape)
     return own[np.arange(len(own)), length.argmax(axis=1)]
 
 
-@dataclass(frozen=True, slots=True)
-class _Divided:
-    """Sides to divide, and the corners of the facets on them."""
-
-    ends: Ints
-    """(n, 2)"""
-    owner: Ints
-    """(m,) side of each pair of side and corner"""
-    corner: Ints
-    """(m,)"""
-    vain: Ints
-    """(n,) as in `Mesh`"""
-
-    @staticmethod
-    def of(faces: Ints, sides: Sides, far: NDArray[np.bool_], vain: Ints) -> "_Divided":
-        """Those of all `sides` of some `faces` that are `far` off."""
-        number = np.cumsum(far) - 1
-        face, k = np.nonzero(far[sides.of_face])
-        across = faces[face, (k + 2) % 3]
-        ends = sides.ends[far]
-        owner = [np.repeat(np.arange(len(ends)), 2), number[sides.of_face[face, k]]]
-        return _Divided(ends, np.concatenate(owner), np.concatenate([ends.ravel(), across]), vain[far])
-
-
-def _split(ground: Ground, mesh: Mesh, blank: Blank, divided: _Divided, worst: Worst) -> tuple[Mesh, Ints]:
-    """The mesh with sides divided where they stand furthest off, and which facets are new."""
-    ends = divided.ends
+def _split(ground: Ground, mesh: Mesh, blank: Blank, ends: Ints, worst: Worst) -> tuple[Mesh, Ints]:
+    """The mesh with sides (n, 2) divided where they stand furthest off, and which facets are new."""
     a, b = mesh.vertices[ends].transpose(1, 0, 2)
     points, leaf = a + worst.share[:, None] * (b - a), mesh.leaf[ends[:, 0]]
-    found = ground.field(points, leaf)
-    beyond = np.flatnonzero(found.depth > 0)
-    edges, sharp = _onto_corners(ground, mesh, divided, (points, found.bite), beyond)
-    points = _onto_ridges(ground, worst, points, leaf)
-    points[beyond[sharp]] = edges[sharp]
+    two = np.flatnonzero(worst.bites[:, 0] != worst.bites[:, 1])
+    owner = np.repeat(np.arange(len(two)), 2)
+    # beside a ridge its bites meet far away: there the surface itself is near
+    longest = STRAYED * worst.error[two]
+    points[two] = onto_edges(ground.sweep, points[two], owner, worst.bites[two].reshape(-1), longest)
     bite, lost, _ = newton(ground, points, np.arange(len(points)), leaf)
     kept = np.flatnonzero(~lost)
     faces, new = parted(mesh.faces, ends[kept], len(mesh.vertices))
@@ -166,55 +121,4 @@ def _split(ground: Ground, mesh: Mesh, blank: Blank, divided: _Divided, worst: W
         np.concatenate([mesh.bite, bite[kept]]),
         np.concatenate([mesh.leaf, leaf[kept]]),
         np.concatenate([mesh.within, blank.contains(points[kept])]),
-        np.concatenate([mesh.was, worst.error[kept]]),
-        np.concatenate([mesh.vain, divided.vain[kept]]),
     ), new
-
-
-def _onto_ridges(ground: Ground, worst: Worst, points: Floats, leaf: Ints) -> Floats:
-    """Points (n, 3) on sides that two bites made, brought to where those meet.
-
-    Through a wall the side runs in metal, and its flanks meet above it, or would if nothing cut off the top:
-    then the point is on the top.
-    """
-    start, points = points, points.copy()
-    two = np.flatnonzero(worst.bites[:, 0] != worst.bites[:, 1])
-    owner, pair = np.repeat(np.arange(len(two)), 2), worst.bites[two].reshape(-1)
-    meeting = ground.sweep.evaluate(points[two][owner], pair, gradient=True)
-    slope = meeting.gradient.reshape(-1, 2, 3)
-    wall = np.einsum("nx,nx->n", slope[:, 0], slope[:, 1]) < 0
-    wall &= meeting.depth.reshape(-1, 2).max(axis=1) < 0
-    # beside a ridge its bites meet far away: there the surface itself is near
-    longest = np.where(wall, WALL * min(ground.grid.cell_mm), STRAYED * worst.error[two])
-    met = onto_edges(ground.sweep, points[two], owner, pair, longest)
-    rows = two[wall]
-    here, there = (ground.field(at, leaf[rows]).depth for at in (points[rows], met[wall]))
-    cut_off = (here < -SETTLED) & (there > SETTLED)
-    points[two] = met
-    points[rows[cut_off]] = between(
-        lambda at, of: ground.field(at, leaf[rows[cut_off]][of]).depth,
-        (start[rows[cut_off]], met[wall][cut_off]),
-        (here[cut_off], there[cut_off]),
-    )
-    return points
-
-
-def _onto_corners(
-    ground: Ground, mesh: Mesh, divided: _Divided, at: tuple[Floats, Ints], rows: Ints
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """Places on the `rows` (m,) of some sides, where a bite reaches further, brought onto the edge that it
-    has there itself, and which of them (m,) there is one for.
-
-    `at` are places (n, 3) on all the sides, and the deepest bites there (n,).
-    """
-    points, bite = at
-    number = np.full(len(points), -1)
-    number[rows] = np.arange(len(rows))
-    mine = np.flatnonzero(number[divided.owner] >= 0)
-    return onto_corners(
-        ground.sweep,
-        points[rows],
-        bite[rows],
-        (number[divided.owner[mine]], mesh.vertices[divided.corner[mine]]),
-        0.5 * lengths(mesh.vertices, divided.ends[rows]),
-    )

@@ -36,10 +36,6 @@ class Mesh:
     """(n,) finest block that each comes from"""
     within: Bools
     """(n,) whether it lies in the blank"""
-    was: Floats
-    """(n,) how far the side stood off that it divided [mm], inf = none"""
-    vain: Ints
-    """(n,) how many times running that dividing it, and what it came from, made nothing better"""
 
     def cut_in(self, corners: Ints) -> Bools:
         """Which facets or sides (k, c) bites made, within the blank at least at one end."""
