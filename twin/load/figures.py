@@ -73,7 +73,7 @@ def load_words(loaded: LoadedRun) -> str:
     figures = load_figures(loaded)["cutting_load"]
     if not isinstance(figures, dict) or not figures["removed_mm3"]:
         return "no metal removed"
-    state = "settled" if loaded.settled else "not settled"
+    state = "settled" if loaded.settled else "not settled to the end"
     return (
         f"{state} in {loaded.windows} windows of at most {loaded.rounds} rounds; "
         f"{figures['removed_mm3']:.1f} mm³ for {figures['energy_j'] / 1e3:.3g} kJ; "

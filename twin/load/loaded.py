@@ -39,8 +39,10 @@ class LoadedRun:
     """of a window"""
     moved_um: tuple[float, ...]
     """by how much at most each round but the first of the hardest moved the part's surface"""
+    settled: bool
+    """whether forces and motion belong together up to the end"""
     frequency_hz: float | None
-    """that an unstable cut trembles with; None where all have settled"""
+    """that an unstable cut trembles with; None where there is none"""
     stalled: bool
     """whether the tool has come to rest in the metal"""
     torque_limit: float
@@ -68,11 +70,6 @@ class LoadedRun:
     def mean_torque(self) -> float:
         """On the tool spindle while metal is removed [N m]."""
         return float(np.abs(self.load.axes[:, self.load.spindle]).mean()) if len(self.load.cell) else 0.0
-
-    @property
-    def settled(self) -> bool:
-        """Whether forces and motion belong together up to the end."""
-        return self.frequency_hz is None
 
 
 def run_under_load(
@@ -105,6 +102,7 @@ def run_under_load(
         rounds=hardest.rounds if hardest else 1,
         mean_rounds=float(np.mean([one.rounds for one in windows])) if windows else 1.0,
         moved_um=hardest.moved_um if hardest else (),
+        settled=all(one.settled for one in windows),
         frequency_hz=None,
         stalled=False,
         torque_limit=drives[load.spindle].force_limit,
