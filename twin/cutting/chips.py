@@ -34,6 +34,8 @@ AROUND = 1.5
 """Steps between the places on the rings of a hobbed part: what lies between them is searched for"""
 LONG = 3.0
 """Steps between its rings along the axis: a hob's chips are as long as it is wide"""
+NOBODY = -1
+"""in place of a bite"""
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
@@ -163,7 +165,13 @@ def removed(sweep: Sweep, rings: Rings, found: Intervals, longest: float) -> Rem
     ends: list[Floats] = []
     for first, last in pairwise(bounds):
         own = order[first:last]
-        owner, edges = _painted(own, found.start[own], found.end[own])
+        # where there never was metal, nothing can be the first to remove it
+        air = rings.air(int(ring[first]))
+        owner, edges = _painted(
+            np.concatenate([own, np.full(len(air), NOBODY)]),
+            np.concatenate([found.start[own], air[:, 0]]),
+            np.concatenate([found.end[own], air[:, 1]]),
+        )
         change = np.flatnonzero(np.diff(owner, prepend=-2, append=-2))
         kept = owner[change[:-1]] >= 0
         owners.append(owner[change[:-1]][kept])

@@ -44,6 +44,28 @@ class Section:
         way, off = self.outline[ahead] - self.outline[k], here - self.outline[k]
         return way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0] > 0.0
 
+    def gaps(self, radius: float) -> Floats:
+        """(m, 2) stretches of a circle at height 0 that lie outside, from and to [rad]; 0 <= from < 2π."""
+        start = self.outline
+        way = np.roll(start, -1, axis=0) - start
+        # |start + t way|² = radius²
+        a, b, c = (np.einsum("nx,nx->n", p, q) for p, q in ((way, way), (start, way), (start, start)))
+        root = b * b - a * (c - radius * radius)
+        root = np.sqrt(np.maximum(root, 0.0)) * np.where(root > 0.0, 1.0, np.nan)
+        ends: list[Floats] = []
+        for sign in (-1.0, 1.0):  # into the circle, where a gap begins, and out of it
+            t = (-b + sign * root) / a
+            edge = np.flatnonzero((t >= 0.0) & (t < 1.0))
+            x, y = (start[edge] + t[edge, None] * way[edge]).T
+            ends.append(np.sort(np.arctan2(y, x) % (2.0 * math.pi)))
+        begin, end = ends
+        if not len(begin):
+            whole = np.array([[0.0, 2.0 * math.pi]])
+            return whole if c.max() <= radius * radius else whole[:0]
+        after = np.searchsorted(end, begin)
+        end = np.concatenate([end, end[:1] + 2.0 * math.pi])[after]
+        return np.column_stack([begin, end])
+
     def mesh(self, z_low: float, z_high: float) -> tuple[Floats, Ints]:
         """Closed mesh of its prism from BEYOND under `z_low` to BEYOND over `z_high`."""
         low, high = z_low - BEYOND, z_high + BEYOND

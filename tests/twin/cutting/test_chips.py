@@ -11,7 +11,12 @@ from twin.cutting.blank import Blank
 from twin.cutting.chips import chips
 from twin.cutting.cut import cut
 from twin.cutting.motion import CutterMotion
+from twin.cutting.section import Section
 from twin.errors import InputError
+from twin.grinding.precut import PrecutGear
+from twin.grinding.wheel import GapWheel
+from twin.inspection.involute import geometry
+from twin.inspection.nominal import GearNominal
 
 BAR = Blank(diameter_mm=20.0, length_mm=3.0)
 FLY = PolygonHead(inserts=1, tip_radius_mm=30.0)
@@ -148,3 +153,34 @@ def test_no_cut_makes_no_chips(synthetic):
 def test_a_resolution_that_cannot_be_is_refused(synthetic, resolution, said):
     with pytest.raises(InputError, match=said):
         chips(BAR, (fly_cutting(synthetic),), resolution_mm=resolution)
+
+
+def test_gaps_of_a_circle_are_where_the_section_is_not():
+    angle = 2.0 * math.pi * np.arange(400) / 400
+    rho = 20.0 + 2.0 * np.sin(6.0 * angle + 0.3) + 0.7 * np.sin(5.0 * angle)
+    section = Section(outline=rho[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), twist=0.1)
+    at = np.random.default_rng(0).uniform(0.0, 2.0 * math.pi, 5000)
+    for radius in (17.0, 19.0, 20.3, 22.5, 23.0):
+        gaps = section.gaps(radius)
+        turns = at[:, None] + [0.0, 2.0 * math.pi]
+        out = ((turns[..., None] >= gaps[:, 0]) & (turns[..., None] < gaps[:, 1])).any(axis=(1, 2))
+        points = np.column_stack([radius * np.cos(at), radius * np.sin(at), np.zeros(len(at))])
+        np.testing.assert_array_equal(out, ~section.contains(points))
+
+
+def test_chips_of_a_gear_that_has_its_gaps_are_what_grinding_takes_off(synthetic):
+    """One gap of a pre-cut gear: its stock alone, not the air in it."""
+    gear = GearNominal(number_of_teeth=12, normal_module_mm=3.0)
+    law = geometry(gear)
+    radius = law.tip_diameter / 2
+    section = PrecutGear(stock_per_flank_mm=0.3, number_of_teeth=12, normal_module_mm=3.0).section(radius)
+    blank = Blank(diameter_mm=2 * radius, length_mm=1.0, bore_mm=26.0, section=section)
+    cutter, motion = synthetic.grinding(
+        GapWheel(outside_diameter_mm=60.0, chord_um=5.0).dressed(gear), teeth=12, module=3.0, helix_deg=0.0,
+        tip_x=law.root_diameter / 2, z=(16.0, -17.0), gaps=1, samples=200,
+    )  # fmt: skip
+    part = cut(blank, ((cutter, motion),), cell_mm=0.3).remains
+    made = chips(blank, ((cutter, motion),), resolution_mm=0.1)
+    lost = part.blank_volume_mm3 - part.volume_mm3
+    assert 2.0 < lost < 8.0
+    assert made.total_mm3 == pytest.approx(lost, rel=0.02)
