@@ -20,7 +20,8 @@ def contact_of(outcome: Outcome) -> Contact | None:
     for alarm in session.alarms:
         if alarm.number == COLLISION:
             return _contact(outcome, len(time) - 1, alarm.found, None)
-    for clash in session.clashes:
+    if session.clashes:
+        clash = session.clashes[0]
         row = min(int(np.searchsorted(time, clash.time_s)), len(time) - 1)
         return _contact(outcome, row, clash.alarm.found, Touch(bodies=CUTTER_AND_STOCK, point=clash.point))
     return None

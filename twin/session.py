@@ -11,7 +11,6 @@ from controller.clock import Machine
 from controller.cnc import Controller
 from controller.language.source import Program
 from controller.tables.alarms import Alarm
-from twin.clashes.clash import Clash
 from twin.course import Course, Tape
 from twin.cutters.cutter import Cutter
 from twin.cutting.motion import CutterMotion
@@ -28,6 +27,16 @@ from twin.sync import spectrum
 Floats = NDArray[np.float64]
 
 MM_PER_UM = 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Clash:
+    """The first time that a tool takes metal the wrong way in a block."""
+
+    alarm: Alarm
+    time_s: float
+    point: Floats
+    """(3,) [mm] where an edge meets the metal, in the work frame: the part frame at C0"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

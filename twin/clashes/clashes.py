@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from controller.span import Span
 from controller.tables.alarms import Alarm
-from twin.clashes.clash import Clash
 from twin.clashes.edges import AROUND, Places, edge_points, places
 from twin.clashes.runs import Manner, Run, Ways, runs
 from twin.clashes.standing import below_surface, standing
@@ -25,7 +24,7 @@ from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.fields import Field, tool_field
 from twin.cutting.motion import CutterMotion
-from twin.session import Session
+from twin.session import Clash, Session
 
 Floats = NDArray[np.float64]
 

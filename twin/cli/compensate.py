@@ -11,7 +11,7 @@ from twin.errors import ExitCode, InputError
 from twin.job import read_job
 from twin.outcome import Options
 from twin.output.folder import result_folder
-from twin.progress import Lines, Silent
+from twin.progress import shown
 
 
 def compensate_command(options: argparse.Namespace) -> ExitCode:
@@ -22,8 +22,8 @@ def compensate_command(options: argparse.Namespace) -> ExitCode:
     job = read_job(options.job)
     out = options.out or Path("out") / f"{job.name}_compensated"
     settings = Options(ideal=options.ideal, cell_mm=cell)
-    with result_folder(out) as folder:
-        found = walk(job, folder, settings, Silent() if options.quiet else Lines())
+    with result_folder(out) as folder, shown(quiet=options.quiet) as reporter:
+        found = walk(job, folder, settings, reporter)
         write_compensation(folder, found)
     for line in lines(found):
         print(line)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from twin.cutting.blank import Blank
 from twin.cutting.grid import Grid, cartesian
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join
-from twin.cutting.section import Section
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -29,8 +28,10 @@ class Rings:
     """Rings through the middles of the cells (r, z) of a grid, with a place at each of its angles."""
 
     grid: Grid
-    section: Section | None
-    """of the blank, beyond which there is no metal"""
+    gaps: tuple[Floats, ...]
+    """(m, 2) for each radius: stretches of angle at height 0 that lie in gaps of the blank [rad]"""
+    twist: float
+    """turn of these per height [rad/mm]"""
     weight: Floats
     """(nr, nz) area of the blank's section that each ring stands for, times its radius [mm³/rad]"""
 
@@ -49,15 +50,16 @@ class Rings:
         # the share of each cell that is inside the blank at the middle of its height
         inside = np.clip(outer - r[:-1, None], 0.0, np.diff(r)[:, None])
         middle = 0.5 * (r[1:] + r[:-1])
+        section = blank.section
+        gaps = tuple(np.zeros((0, 2)) if section is None else section.gaps(at) for at in middle.tolist())
+        twist = 0.0 if section is None else section.twist
         weight = middle[:, None] * inside * np.diff(z)
-        return cls(grid=Grid(r=r, sectors=sectors, z=z), section=blank.section, weight=weight)
+        return cls(grid=Grid(r=r, sectors=sectors, z=z), gaps=gaps, twist=twist, weight=weight)
 
     def air(self, ring: int) -> Floats:
         """(m, 2) stretches of a ring that lie in gaps of the blank, from and to [rad]."""
         i, k = divmod(ring, len(self.height))
-        if self.section is None:
-            return np.zeros((0, 2))
-        found = self.section.gaps(float(self.radius[i])) + self.section.twist * self.height[k]
+        found = self.gaps[i] + self.twist * self.height[k]
         return found - 2.0 * math.pi * np.floor(found[:, :1] / (2.0 * math.pi))
 
     @property

@@ -1,7 +1,5 @@
 """What forces change of a motion, as the part's surface sees it."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,31 +14,21 @@ UM = 1e3
 
 
 def change_um(
-    before: Sequence[CutterMotion],
-    after: Sequence[CutterMotion],
-    ticks: Ints,
-    *,
-    radius: float,
-    tick_s: float,
-) -> tuple[Floats, Ints]:
-    """(m, 4) how the tool's place (3,) and the stock's surface about its axis have changed [µm], and (m,) in
-    which of the `ticks`: those that both runs have.
+    before: CutterMotion, after: CutterMotion, ticks: Ints, *, radius: float, tick_s: float
+) -> Floats:
+    """(m, 4) how the tool's place (3,) and the stock's surface about its axis have changed [µm], in those of
+    the `ticks` that both runs have.
 
     Compared where the edges stand alike: an edge that comes late meets the metal where that has gone on to.
     """
-    changes, when = [np.zeros((0, 4))], [np.zeros(0, np.int64)]
-    for old, new in zip(before, after, strict=False):
-        before_ticks, after_ticks = (np.rint(m.time_s / tick_s).astype(np.int64) - 1 for m in (old, new))
-        common = np.intersect1d(np.intersect1d(before_ticks, after_ticks), ticks)
-        a, b = np.searchsorted(before_ticks, common), np.searchsorted(after_ticks, common)
-        places = [_places(motion, radius) for motion in (old, new)]
-        change = places[1][b] - places[0][a]
-        rate = np.gradient(places[1], axis=0)[b]
-        turned, turning = new.tool_angle[b] - old.tool_angle[a], np.gradient(new.tool_angle)[b]
-        late = np.divide(turned, turning, out=np.zeros(len(b)), where=np.abs(turning) > STILL)
-        changes.append((change - late[:, None] * rate) * UM)
-        when.append(common)
-    return np.concatenate(changes), np.concatenate(when)
+    before_ticks, after_ticks = (np.rint(m.time_s / tick_s).astype(np.int64) - 1 for m in (before, after))
+    common = np.intersect1d(np.intersect1d(before_ticks, after_ticks), ticks)
+    a, b = np.searchsorted(before_ticks, common), np.searchsorted(after_ticks, common)
+    old, new = _places(before, radius), _places(after, radius)
+    rate = np.gradient(new, axis=0)[b]
+    turned, turning = after.tool_angle[b] - before.tool_angle[a], np.gradient(after.tool_angle)[b]
+    late = np.divide(turned, turning, out=np.zeros(len(b)), where=np.abs(turning) > STILL)
+    return (new[b] - old[a] - late[:, None] * rate) * UM
 
 
 def bound_um(change: Floats) -> float:

@@ -90,9 +90,8 @@ class Rounds:
         self._acted = self._tail = self.bench.no_load
         self._shortest, self._ticks = ticks, LONGEST
 
-    def go(self) -> bool:
-        """Go on to the program's end, or to a window that does not settle or in which the tool stops; whether
-        there was none."""
+    def go(self) -> None:
+        """Go on to the program's end, or to a window that does not settle or in which the tool stops."""
         while (chunk := self._ahead(self._ticks)) is not None:
             clear = self._clear(chunk) if chunk.ticks > self._shortest else 0
             if clear >= self._shortest:
@@ -109,8 +108,7 @@ class Rounds:
             idle = not len(result.load.cell) and not len(self._tail.cell)
             self._ticks = min(2 * self._ticks, LONGEST) if idle else self._shortest
             if not result.settled or result.stalled:
-                return False
-        return True
+                return
 
     def _ahead(self, limit: int) -> Chunk | None:
         """The next ticks, all with one tool."""
@@ -215,7 +213,7 @@ class Rounds:
     def _moved(self, before: CutterMotion, after: CutterMotion, ticks: NDArray[np.int64]) -> float:
         """By how much the part's surface has moved at most [µm]."""
         sizes = {"radius": self.bench.blank.radius, "tick_s": self.bench.tick_s}
-        return bound_um(change_um([before], [after], ticks, **sizes)[0])
+        return bound_um(change_um(before, after, ticks, **sizes))
 
     def _guess(self, chunk: Chunk) -> CuttingLoad:
         """What acted a turn of the tool ago, else what is left of metal that is cut."""

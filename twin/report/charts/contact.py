@@ -1,12 +1,10 @@
 """Two bodies that touch, and what stands about them, from the front and from above."""
 
-import numpy as np
 from markupsafe import Markup
 
 from twin.inspection.hull import hull
-from twin.inspection.result import Floats
 from twin.report.data import Contact
-from twin.report.drawing import Drawing, Plot
+from twin.report.drawing import Drawing, Plot, standalone
 
 WIDTH = 180.0
 """[mm]"""
@@ -19,7 +17,6 @@ ABOUT = 190.0
 """[mm] of the machine to each side of the contact"""
 VIEWS = (("Along the work axis, from its free end", 0, 1), ("From above", 2, 0))
 NAMES = "XYZ"
-SAME = 1e-9
 STYLE = """<style>text{font:2.4px sans-serif;fill:#1f2933}path{fill:none}
 .axis{stroke:#52606d;stroke-width:.18}
 .body{fill:#eef3f8;stroke:#52606d;stroke-width:.13}.place{fill:none;stroke:#1f2933;stroke-width:.35}
@@ -50,7 +47,8 @@ def contact_chart(contact: Contact) -> Markup:
             kind = (
                 ("touching" if body == contact.bodies[0] else "touched") if body in contact.bodies else "body"
             )
-            outline = _outline(points[:, [across, up]])
+            seen = points[:, [across, up]]
+            outline = seen[hull(seen)]
             plot.curve(outline[:, 0], outline[:, 1], kind, closed=True, window=window)
         drawing.disc(float(plot.across(x)), float(plot.down(y)), 1.6, "place")
         plot.x_axis(f"{NAMES[across]} [mm]", most=6)
@@ -60,14 +58,4 @@ def contact_chart(contact: Contact) -> Markup:
 
 def contact_file(contact: Contact) -> str:
     """The same as a file of its own."""
-    svg = str(contact_chart(contact))
-    head, rest = svg.split(">", 1)
-    ground = '<rect width="100%" height="100%" fill="#fff"/>'
-    return f'{head} xmlns="http://www.w3.org/2000/svg">{STYLE}{ground}{rest}\n'
-
-
-def _outline(points: Floats) -> Floats:
-    """(k, 2) the hull of points (n, 2), which may lie on a line."""
-    if np.ptp(points, axis=0).min() < SAME:
-        return points[[int(np.argmin(points.sum(axis=1))), int(np.argmax(points.sum(axis=1)))]]
-    return points[hull(points)]
+    return standalone(contact_chart(contact), STYLE)

@@ -6,7 +6,7 @@ import numpy as np
 from markupsafe import Markup
 
 from twin.machine.response import Response
-from twin.report.drawing import Drawing, Plot
+from twin.report.drawing import Drawing, Plot, standalone
 
 WIDTH = 180.0
 """[mm]"""
@@ -59,9 +59,7 @@ def drives_chart(pairs: Sequence[tuple[Response, Response]]) -> Markup:
 
 def drives_file(pairs: Sequence[tuple[Response, Response]]) -> str:
     """The same as a file of its own."""
-    head, rest = str(drives_chart(pairs)).split(">", 1)
-    ground = '<rect width="100%" height="100%" fill="#fff"/>'
-    return f'{head} xmlns="http://www.w3.org/2000/svg">{STYLE}{ground}{rest}\n'
+    return standalone(drives_chart(pairs), STYLE)
 
 
 def _plot(drawing: Drawing, column: int, top: float, x: tuple[float, float], y: tuple[float, float]) -> Plot:

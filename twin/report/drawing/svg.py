@@ -13,6 +13,13 @@ _DROP = 0.55
 """by which a subscript stands below the line [mm]"""
 
 
+def standalone(svg: Markup, style: str) -> str:
+    """A picture as a file of its own, on white, with a style sheet (`<style>` and all)."""
+    head, rest = str(svg).split(">", 1)
+    ground = '<rect width="100%" height="100%" fill="#fff"/>'
+    return f'{head} xmlns="http://www.w3.org/2000/svg">{style}{ground}{rest}\n'
+
+
 class Drawing:
     """A picture of some width and height [mm on paper], x to the right and y downwards from its upper left.
 
