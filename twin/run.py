@@ -98,7 +98,13 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
             ideal=options.ideal,
             progress=lambda seconds: tell.share(seconds / max(cycle, period)),
         )
-        loaded = run_under_load(job, ready, course, tell=tell.stage) if job.physics.cutting_load else None
+        loaded = (
+            run_under_load(
+                job, ready, course, begin_program(program, settings, ready, ideal=True), tell=tell.stage
+            )
+            if job.physics.cutting_load
+            else None
+        )
         session = judged(blank, loaded.session if loaded else _gone(course, ready))
     with result_folder(out) as folder, Background() as background:
         background.start(session.recording.save, folder / "recording.npz")

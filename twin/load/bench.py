@@ -36,10 +36,11 @@ class Bench:
         )
         self._physics, self._ready = job.physics, ready
 
-    def whole(self) -> Stock:
-        """The blank before anything is cut. Raises InputError for a resolution beyond the memory."""
+    def whole(self, slope: float) -> Stock:
+        """The blank before anything is cut, as rays that rise by `slope`. Raises InputError for a resolution
+        beyond the memory."""
         cutters = [tool.cutter for tool in self._ready.tools]
-        return Stock.of(self.blank, cutters, self._physics.load_resolution_mm)
+        return Stock.of(self.blank, cutters, self._physics.load_resolution_mm, slope=slope)
 
     def span(self, before: tuple[NDArray[np.int64], Floats], feedback: Feedback, first: int) -> Span:
         """Ticks from `first` on as the machine has gone through them, after the rows `before`."""

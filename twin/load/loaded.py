@@ -14,6 +14,7 @@ from twin.load.change import dominant_hz
 from twin.load.material import Material
 from twin.load.rounds import TICKS, Rounds, Settled
 from twin.load.timeline import CuttingLoad, joined
+from twin.load.walls import slope_of
 from twin.session import Session, session_of
 from twin.setup import Ready
 
@@ -76,6 +77,7 @@ def run_under_load(
     job: Job,
     ready: Ready,
     course: Course,
+    foreseen: Course,
     *,
     ticks: int = TICKS,
     tell: Callable[[str], None] = lambda _text: None,
@@ -83,10 +85,13 @@ def run_under_load(
     """Run the program that `course` begins to its end, or to where rounds do not settle (HT9040) or the tool
     stalls in the metal (HT9041).
 
-    `ticks` of a window in which metal is cut, at most. Raises InputError for a material without figures.
+    `foreseen` is the same program's beginning on ideal axes, `ticks` of a window
+    in which metal is cut, at most. Raises InputError for a material without figures.
     """
     tell("under its cutting forces, some ticks after the other")
-    rounds = Rounds(job, ready, course, ticks=ticks)
+    foreseen.go()
+    slope = slope_of(job.work.blank(), session_of(foreseen, ready).motions)
+    rounds = Rounds(job, ready, course, slope=slope, ticks=ticks)
     rounds.go()
     load = joined(rounds.past) if rounds.past else rounds.bench.no_load.whole()
     session = session_of(course, ready, load if len(load.cell) else None)

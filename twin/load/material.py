@@ -67,7 +67,7 @@ class Physics:
     work_stiffness_n_per_um: Positive = 60.0
     """of work, arbor and spindle against the bed, the same in every direction [plausible]"""
     load_resolution_mm: Positive | None = None
-    """distance of the rays on which metal is counted; None = an 18th of the tooth pitch or edge width"""
+    """distance of the rays on which metal is counted; None = a share of the tooth pitch or edge width"""
 
     @property
     def compliance_um_per_n(self) -> float:

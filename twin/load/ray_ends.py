@@ -1,5 +1,7 @@
 """Where a pass cuts a ray of the stock off: where its depth along the ray is zero."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,11 +28,19 @@ def cut_at(field: DepthField, rays: Stock, ray: Ints, index: Ints) -> Floats:
     meeting = field.evaluate(rays.points(ray, high), index)
     cut = np.flatnonzero(meeting.depth > 0)
     ray, index, high, above = ray[cut], index[cut], high[cut], meeting.depth[cut]
-    low = np.maximum(high - 2.0 * (field.cutter.radius - meeting.rho[cut]) - SLACK, rays.inner)
-    below = field.evaluate(rays.points(ray, low), index).depth
+    low = high - 2.0 * (field.cutter.radius - meeting.rho[cut]) - SLACK
+    below = np.ones(len(cut))
+    inside = np.arange(len(cut))
+    while len(inside):
+        # inclined rays may leave an edge further in than their ends stand in it
+        low[inside] = np.maximum(low[inside], rays.inner[ray[inside]])
+        below[inside] = field.evaluate(rays.points(ray[inside], low[inside]), index[inside]).depth
+        inside = inside[(below[inside] >= 0) & (low[inside] > rays.inner[ray[inside]])]
+        low[inside] -= high[inside] - low[inside]
     through = below >= 0  # the edge comes from below, or through to the bore
     below = np.where(through, -above, below)
-    out[cut] = np.where(through, rays.inner, _zero(field, rays, (ray, index), (low, below), (high, above)))
+    zero = _zero(field, rays, (ray, index), (low, below), (high, above))
+    out[cut] = np.where(through, rays.inner[ray], zero)
     return out
 
 
@@ -43,15 +53,15 @@ def _zero(
 ) -> Floats:
     """(n,) radii between others, (n,) each with their depths below and above 0, where the depth is zero.
 
-    Secants between the last two, which start from inside: depth grows no faster than the radius, so nothing
-    is passed over. A secant that leaves the bounds gives way to false position between them.
+    Secants between the last two, which start from inside: depth grows no faster than the way along the ray,
+    so nothing is passed over. A secant that leaves the bounds gives way to false position between them.
     """
     (low, below), (high, above) = (
         tuple(value.copy() for value in outside),
         tuple(value.copy() for value in inside),
     )
     before, depth_before = high.copy(), above.copy()
-    at = np.maximum(high - above, low)
+    at = np.maximum(high - above / math.hypot(1.0, rays.slope), low)
     rows = np.arange(len(at))
     for step in range(STEPS):
         depth = field.evaluate(rays.points(pairs[0][rows], at[rows]), pairs[1][rows]).depth

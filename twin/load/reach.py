@@ -40,7 +40,7 @@ def may_meet(cutter: Cutter, motion: CutterMotion, stock: Stock, rows: slice) ->
     nearest = float(motion.centre[rows, 0].min()) - high - _clamped(motion, stock)
     if nearest > cutter.radius:
         return False
-    half = math.acos(max(nearest / cutter.radius, -1.0)) + abs(cutter.twist) * 2.0 * _farthest(stock)
+    half = math.acos(max(nearest / cutter.radius, -1.0)) + abs(cutter.twist) * 2.0 * stock.farthest
     angle = motion.tool_angle[rows]
     if half + float(np.ptp(angle)) / 2.0 >= math.pi:
         return True
@@ -48,15 +48,10 @@ def may_meet(cutter: Cutter, motion: CutterMotion, stock: Stock, rows: slice) ->
     return bool((np.cos(middle) > math.cos(half + 0.5 * float(np.ptp(angle)))).any())
 
 
-def _farthest(stock: Stock) -> float:
-    """From the origin, where stock stands [mm]."""
-    return math.hypot(float(stock.end.max(initial=0.0)), float(np.abs(stock.z).max(initial=0.0)))
-
-
 def _clamped(motion: CutterMotion, stock: Stock) -> float:
     """How far its clamping shifts any of the stock at most [mm]."""
     turned = float(np.linalg.norm(motion.mount.rotation - np.eye(3), 2))
-    return turned * _farthest(stock) + float(np.linalg.norm(motion.mount.translation))
+    return turned * stock.farthest + float(np.linalg.norm(motion.mount.translation))
 
 
 class Reach:
@@ -79,7 +74,7 @@ class Reach:
             self._time = self._time + np.nan_to_num((p.angle - standing) / self._rate)
         self._spread = np.where(p.slant < FASTEST, p.slant / (1.0 - np.minimum(p.slant, FASTEST)), np.inf)
         self._shift = _clamped(motion, stock)
-        self._along = abs(field.cutter.twist) * 2.0 * _farthest(stock)
+        self._along = abs(field.cutter.twist) * 2.0 * stock.farthest
 
     def passes(self) -> Ints:
         """Passes that may meet stock in the time asked for."""

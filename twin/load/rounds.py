@@ -78,11 +78,14 @@ class Settled:
 class Rounds:
     """A course under its own forces, as far as it has come."""
 
-    def __init__(self, job: Job, ready: Ready, course: Course, *, ticks: int = TICKS) -> None:
-        """`ticks` of a window in which metal is cut. Raises InputError for a material without figures."""
+    def __init__(
+        self, job: Job, ready: Ready, course: Course, *, slope: float = 0.0, ticks: int = TICKS
+    ) -> None:
+        """`slope` of the stock's rays, `ticks` of a window in which metal is cut. Raises InputError for a
+        material without figures."""
         self.bench = Bench(job, ready)
         self.course = course
-        self.stock = self.bench.whole()
+        self.stock = self.bench.whole(slope)
         self.past: list[CuttingLoad] = []
         """what acted in each window so far, by whole ticks"""
         self.windows: list[Settled] = []

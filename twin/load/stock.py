@@ -1,4 +1,8 @@
-"""The stock as a brush of rays from the work axis outwards, each as long as the metal that stands on it."""
+"""The stock as a brush of rays from the work axis outwards, each as long as the metal that stands on it.
+
+Rays may be inclined in their planes through the axis, r = z − z₀ or z₀ − z (`slope` ±1): then an edge that
+is fed along the axis meets them one by one, as one that comes from outside does, and not row by row.
+"""
 
 import math
 from collections.abc import Iterable
@@ -16,23 +20,32 @@ Ints = NDArray[np.int64]
 
 RAYS_PER_PITCH = 18.0
 """or on the width of an edge, where the job names no resolution"""
+INCLINED_PER_PITCH = 10.0
+"""the same of inclined rays, which the edges meet one by one"""
 RAYS = 60_000
 """that a count has at most where the job names no resolution; it may have ten times as many"""
 
 
 @dataclass(slots=True)
 class Stock:
-    """What stands of the blank: rays at angles and heights of the part frame, angle by angle."""
+    """What stands of the blank: rays at angles and heights of the part frame, angle by angle.
+
+    A line that leaves the blank and enters it again is two rays.
+    """
 
     cos: Floats
     """(m,) of the angle"""
     sin: Floats
     z: Floats
-    """(m,) [mm]"""
+    """(m,) where the ray's line meets the work axis [mm]"""
+    slope: float
+    """by which it rises along z per radius"""
+    inner: Floats
+    """(m,) radius at which the metal begins [mm]"""
     end: Floats
-    """(m,) how far the metal reaches from the axis [mm]"""
-    inner: float
-    """radius of the bore [mm]"""
+    """(m,) how far it reaches from the axis [mm]"""
+    farthest: float
+    """that any metal of the blank stands from the origin [mm]"""
     turn: float
     """angle between neighbours [rad]"""
     rise: float
@@ -41,26 +54,38 @@ class Stock:
     """distance of the rays on the blank's surface, as asked for [mm]"""
 
     @classmethod
-    def of(cls, blank: Blank, cutters: Iterable[Cutter], resolution_mm: float | None = None) -> "Stock":
-        """A whole blank; `resolution_mm` is the distance of the rays on its surface.
+    def of(
+        cls,
+        blank: Blank,
+        cutters: Iterable[Cutter],
+        resolution_mm: float | None = None,
+        *,
+        slope: float = 0.0,
+    ) -> "Stock":
+        """A whole blank; `resolution_mm` is the distance of the rays on its surface, `slope` their rise.
 
         Raises InputError for a resolution that would need too much memory or time.
         """
-        step = _step(blank, cutters, resolution_mm)
-        around = math.ceil(2.0 * math.pi * blank.radius / step)
-        along = math.ceil(blank.length_mm / step)
         low, high = blank.z_range
+        lowest = low - max(slope, 0.0) * blank.radius
+        highest = high + max(-slope, 0.0) * blank.radius
+        per_pitch = INCLINED_PER_PITCH if slope else RAYS_PER_PITCH
+        step = _step(blank, highest - lowest, cutters, per_pitch, resolution_mm)
+        around = math.ceil(2.0 * math.pi * blank.radius / step)
+        along = math.ceil((highest - lowest) / step)
         angle = 2.0 * math.pi * (np.arange(around) + 0.5) / around
-        z = low + (high - low) * (np.arange(along) + 0.5) / along
-        turned, height = (grid.reshape(-1) for grid in np.meshgrid(angle, z, indexing="ij"))
+        z = lowest + (highest - lowest) * (np.arange(along) + 0.5) / along
+        z, inner, end = _stretches(blank.outline(), z, slope)
         return cls(
-            cos=np.cos(turned),
-            sin=np.sin(turned),
-            z=height,
-            end=blank.outer_radius(height),
-            inner=blank.bore_mm / 2.0,
+            cos=np.repeat(np.cos(angle), len(z)),
+            sin=np.repeat(np.sin(angle), len(z)),
+            z=np.tile(z, around),
+            slope=slope,
+            inner=np.tile(inner, around),
+            end=np.tile(end, around),
+            farthest=math.hypot(blank.radius, blank.length_mm),
             turn=2.0 * math.pi / around,
-            rise=(high - low) / along,
+            rise=(highest - lowest) / along,
             step=step,
         )
 
@@ -70,15 +95,34 @@ class Stock:
 
     def points(self, ray: Ints, radius: Floats) -> Floats:
         """(n, 3) at some radii of rays (n,)."""
-        return np.column_stack([radius * self.cos[ray], radius * self.sin[ray], self.z[ray]])
+        return np.column_stack(
+            [radius * self.cos[ray], radius * self.sin[ray], self.z[ray] + self.slope * radius]
+        )
 
 
-def _step(blank: Blank, cutters: Iterable[Cutter], wanted: float | None) -> float:
-    """The resolution asked for, or an 18th of the tooth pitch or of the edge's width [mm]."""
-    finest = math.sqrt(2.0 * math.pi * blank.radius * blank.length_mm / RAYS)
+def _stretches(outline: Floats, z: Floats, slope: float) -> tuple[Floats, Floats, Floats]:
+    """(m,) lines, first and last radius of metal, on lines from z (k,) of the axis on, line by line: where
+    they cross a closed `outline` (n, 2) of (r, z)."""
+    begin, end = outline, np.roll(outline, -1, axis=0)
+    above = begin[:, 1] - slope * begin[:, 0] > z[:, None]
+    crossed = above != (end[:, 1] - slope * end[:, 0] > z[:, None])
+    line, edge = np.nonzero(crossed)
+    rise = end[edge] - begin[edge]
+    share = (z[line] + slope * begin[edge, 0] - begin[edge, 1]) / (rise[:, 1] - slope * rise[:, 0])
+    radius = begin[edge, 0] + share * rise[:, 0]
+    order = np.lexsort((radius, line))
+    pairs = radius[order].reshape(-1, 2)
+    return z[line[order][::2]], pairs[:, 0], pairs[:, 1]
+
+
+def _step(
+    blank: Blank, height: float, cutters: Iterable[Cutter], per_pitch: float, wanted: float | None
+) -> float:
+    """The resolution asked for, or a share of the tooth pitch or of the edge's width [mm]."""
+    finest = math.sqrt(2.0 * math.pi * blank.radius * height / RAYS)
     if wanted is None:
         wide = [min(c.profile.pitch, 2.0 * c.profile.half_width) for c in cutters]
-        return max(min([blank.radius, *wide]) / RAYS_PER_PITCH, finest)
+        return max(min([blank.radius, *wide]) / per_pitch, finest)
     least = finest / math.sqrt(10.0)
     if wanted < least:
         raise InputError(

@@ -52,8 +52,12 @@ M30
 
 def metal_of(blank: Blank, tool: tuple[Cutter, CutterMotion], resolution_mm: float | None = None) -> Removal:
     """All metal that one tool takes off a whole blank."""
+    return removal_of(Stock.of(blank, [tool[0]], resolution_mm), blank, tool)
+
+
+def removal_of(stock: Stock, blank: Blank, tool: tuple[Cutter, CutterMotion]) -> Removal:
+    """All metal that one tool takes off the stock of a blank."""
     cutter, motion = tool
-    stock = Stock.of(blank, [cutter], resolution_mm)
     return removal(stock, DepthField(cutter, motion, blank.radius, blank.z_range), motion)
 
 
@@ -84,4 +88,5 @@ class Polygon:
         return session_of(course, self.ready, load)
 
     def loaded(self, *, ideal: bool = True, ticks: int = TICKS) -> LoadedRun:
-        return run_under_load(self.job, self.ready, self.begin(ideal=ideal), ticks=ticks)
+        course, foreseen = self.begin(ideal=ideal), self.begin(ideal=True)
+        return run_under_load(self.job, self.ready, course, foreseen, ticks=ticks)
