@@ -8,18 +8,20 @@ true unions, whatever the program does. What is left of a bite's intervals, over
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
+from twin.cutting.blocks import Blocks
 from twin.cutting.fields import tool_field
 from twin.cutting.meeting import Meeting
 from twin.cutting.motion import CutterMotion
-from twin.cutting.rings import Intervals, Rings, intervals, pass_order
+from twin.cutting.removed import removed
+from twin.cutting.rings import Rings, intervals
 from twin.cutting.sweep import Sweep
+from twin.cutting.thickness import Places, climbed
 from twin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -34,8 +36,6 @@ AROUND = 1.5
 """Steps between the places on the rings of a hobbed part: what lies between them is searched for"""
 LONG = 3.0
 """Steps between its rings along the axis: a hob's chips are as long as it is wide"""
-NOBODY = -1
-"""in place of a bite"""
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
@@ -54,8 +54,7 @@ class Chips:
     volume_mm3: Floats
     """(n,)"""
     thickness_max_mm: Floats
-    """(n,) farthest that the material stood above the edge, in its rake plane; where that is the blank's own
-    surface, half the resolution less"""
+    """(n,) farthest that the material stood above the edge, in its rake plane"""
     thickness_mean_mm: Floats
     """(n,) twice the material's mean height above the edge: of a chip of even thickness, its thickness"""
     width_mm: Floats
@@ -74,26 +73,6 @@ class Chips:
 
 
 @dataclass(frozen=True, slots=True)
-class Removed:
-    """Pieces of rings, each with the bite that was the first to remove it."""
-
-    ring: Ints
-    """(n,)"""
-    start: Floats
-    """(n,) [rad]"""
-    width: Floats
-    """(n,) [rad]"""
-    bite: Ints
-    """(n,) numbered through all tools"""
-    instant: Floats
-    """(n,) sample of the bite's motion at which it passes the middle of its interval"""
-
-    def volume(self, rings: Rings) -> Floats:
-        """(n,) that the pieces stand for [mm³]."""
-        return rings.weight.reshape(-1)[self.ring] * self.width
-
-
-@dataclass(frozen=True, slots=True)
 class _Shares:
     """Pieces of intervals that were the first to be removed."""
 
@@ -101,7 +80,9 @@ class _Shares:
     """(n,) numbered through all tools"""
     volume: Floats
     height: Floats
-    """(n, 3) above the edge at both ends and the middle [mm]"""
+    """(n,) mean, above the edge [mm]"""
+    largest: Floats
+    """(n,) that is near it; 0 where it was not looked for [mm]"""
     instant: Floats
     foot: Floats
     """(n, 2) where on the edge (s, rho) the middle lies [mm]"""
@@ -130,7 +111,8 @@ def chips(
     slabs = list(rings.slabs()) if sweep.passes else []
     for number, low in enumerate(slabs):
         progress("chips", number / len(slabs))
-        shares.append(_shares(sweep, rings, intervals(sweep, rings, low), step))
+        blocks = Blocks.of(sweep, rings.grid, low)
+        shares.append(_shares(sweep, blank, rings, blocks, step))
     progress("chips", 1.0)
     return _summed(sweep, tools, shares, step)
 
@@ -152,81 +134,25 @@ def _step(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], resoluti
     return resolution
 
 
-def removed(sweep: Sweep, rings: Rings, found: Intervals, longest: float) -> Removed:
-    """What of the intervals was still there, in pieces of arc no longer than `longest` [mm].
-
-    On each ring the later ones are painted over by the earlier.
-    """
-    order = np.lexsort((-pass_order(sweep, found.bite), found.ring))
-    ring = found.ring[order]
-    bounds = np.concatenate([[0], np.flatnonzero(np.diff(ring)) + 1, [len(ring)]])
-    owners: list[Ints] = []
-    starts: list[Floats] = []
-    ends: list[Floats] = []
-    for first, last in pairwise(bounds):
-        own = order[first:last]
-        # where there never was metal, nothing can be the first to remove it
-        air = rings.air(int(ring[first]))
-        owner, edges = _painted(
-            np.concatenate([own, np.full(len(air), NOBODY)]),
-            np.concatenate([found.start[own], air[:, 0]]),
-            np.concatenate([found.end[own], air[:, 1]]),
-        )
-        change = np.flatnonzero(np.diff(owner, prepend=-2, append=-2))
-        kept = owner[change[:-1]] >= 0
-        owners.append(owner[change[:-1]][kept])
-        starts.append(edges[change[:-1]][kept])
-        ends.append(edges[change[1:]][kept])
-    none = np.zeros(0)
-    owner = np.concatenate([none.astype(np.int64), *owners])
-    start, end = np.concatenate([none, *starts]), np.concatenate([none, *ends])
-    radius = rings.radius[found.ring[owner] // len(rings.height)]
-    parts = np.maximum(np.ceil((end - start) * radius / longest).astype(np.int64), 1)
-    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    wide = np.repeat((end - start) / parts, parts)
-    owner, start = np.repeat(owner, parts), np.repeat(start, parts) + number * wide
-    return Removed(found.ring[owner], start, wide, found.bite[owner], found.instant[owner])
-
-
 def _wide(tools: tuple[tuple[Cutter, CutterMotion], ...]) -> tuple[float, float]:
     """Steps around and along the axis for one across the rings."""
     return (AROUND, LONG) if all(math.isfinite(cutter.profile.pitch) for cutter, _ in tools) else (1.0, 1.0)
 
 
-def _shares(sweep: Sweep, rings: Rings, found: Intervals, step: float) -> _Shares:
+def _shares(sweep: Sweep, blank: Blank, rings: Rings, blocks: Blocks, step: float) -> _Shares:
     """What each bite was the first to remove, and where on its edge: pieces short enough that their feet lie
     close along it."""
-    part = removed(sweep, rings, found, 2.0 * step)
-    met = [
-        sweep.evaluate(rings.points(part.ring, part.start + share * part.width), part.bite)
-        for share in (0.0, 0.5, 1.0)
-    ]
+    part = removed(sweep, rings, intervals(sweep, rings, blocks), 2.0 * step)
+    angle = part.start[:, None] + part.width[:, None] * np.array([0.0, 0.5, 1.0])
+    met = [sweep.evaluate(rings.points(part.ring, at), part.bite) for at in angle.T]
     height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
+    best = height.argmax(axis=1)
+    rows = np.arange(len(best))
+    i, k = np.divmod(part.ring, len(rings.height))
+    at = np.stack([rings.radius[i], angle[rows, best], rings.height[k]], axis=1)
+    largest = climbed(sweep, blank, blocks, Places(part.bite, at, height[rows, best]), rings.spacing)
     foot, slope = _foot(sweep, met[1], part.bite)
-    return _Shares(part.bite, part.volume(rings), height, part.instant, foot, slope)
-
-
-def _painted(own: Ints, start: Floats, end: Floats) -> tuple[Ints, Floats]:
-    """Which interval each stretch between the edges of all of them belongs to: the last that covers it.
-
-    Returns the owners (e − 1,), −1 where there is none, and the edges (e,) from 0 to a full turn.
-    """
-    full = 2.0 * math.pi
-    # an interval that begins before 0 goes on before the end of the turn
-    before, after = start < 0, end > full
-    own = np.concatenate([own, own[before], own[after]])
-    rank = np.concatenate([np.arange(len(start)), np.flatnonzero(before), np.flatnonzero(after)])
-    low = np.concatenate([np.maximum(start, 0.0), start[before] + full, np.zeros(after.sum())])
-    high = np.concatenate([np.minimum(end, full), np.full(before.sum(), full), end[after] - full])
-    edges = np.unique(np.concatenate([[0.0, full], low, high]))
-    order = np.argsort(rank, kind="stable")
-    owner = np.full(len(edges) - 1, -1, dtype=np.int64)
-    rows = zip(
-        np.searchsorted(edges, low)[order], np.searchsorted(edges, high)[order], own[order], strict=True
-    )
-    for a, b, who in rows:
-        owner[a:b] = who
-    return owner, edges
+    return _Shares(part.bite, part.volume(rings), height @ SIMPSON, largest, part.instant, foot, slope)
 
 
 def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
@@ -265,10 +191,10 @@ def _summed(
     """Shares of each tooth's pass together, in the order of time."""
     none = np.zeros(0)
     bite = np.concatenate([none.astype(np.int64), *(s.bite for s in shares)])
-    volume, instant, slope = (
-        np.concatenate([none, *(getattr(s, name) for s in shares)]) for name in ("volume", "instant", "slope")
+    volume, height, highest, instant, slope = (
+        np.concatenate([none, *(getattr(s, name) for s in shares)])
+        for name in ("volume", "height", "largest", "instant", "slope")
     )
-    height = np.concatenate([np.zeros((0, 3)), *(s.height for s in shares)])
     foot = np.concatenate([np.zeros((0, 2)), *(s.foot for s in shares)])
     stretch, own = stretch_of(sweep, bite)
     turn, tooth, time = np.zeros_like(own), np.zeros_like(own), np.zeros(len(own))
@@ -281,9 +207,9 @@ def _summed(
     n = len(kinds)
     total, mean = np.zeros(n), np.zeros(n)
     np.add.at(total, chip, volume)
-    np.add.at(mean, chip, volume * (height @ SIMPSON))
+    np.add.at(mean, chip, volume * height)
     largest, begin = np.zeros(n), np.full(n, np.inf)
-    np.maximum.at(largest, chip, height.max(axis=1))
+    np.maximum.at(largest, chip, highest)
     np.minimum.at(begin, chip, time)
     side = 2.0 * step
     square = np.floor(foot / side).astype(np.int64)

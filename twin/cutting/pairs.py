@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+S = TypeVar("S")
 T = TypeVar("T")
 
 BATCH = 1 << 13
@@ -78,7 +79,7 @@ def batches(start: Ints, size: int = BATCH) -> Iterator[slice]:
         yield slice(low, len(start) - 1)
 
 
-def in_parallel(work: Callable[[slice], T], slices: Iterator[slice]) -> list[T]:
+def in_parallel(work: Callable[[S], T], slices: Iterator[S]) -> list[T]:
     """`work` on every slice, results in order; the arrays' own loops run outside the interpreter lock."""
     parts = list(slices)
     if len(parts) < 2:

@@ -8,16 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.blank import Blank
+from twin.cutting.blocks import COARSEST, FINEST, Blocks
 from twin.cutting.grid import Grid, cartesian
-from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join
+from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-COARSEST = 16
-"""Cells along the edge of the blocks that the search begins with, and along z of a slab."""
-FINEST = 2
 ROUNDS = 12
 CLOSE = 1e-5
 """[mm] of depth at which the end of an interval counts as found"""
@@ -68,6 +66,11 @@ class Rings:
         return 0.5 * (self.grid.r[1:] + self.grid.r[:-1])
 
     @property
+    def spacing(self) -> Floats:
+        """(3,) between neighbours across, around at the outer radius, and along the axis [mm]."""
+        return np.array(self.grid.cell_mm)
+
+    @property
     def height(self) -> Floats:
         """(nz,) z of the rings [mm]."""
         return 0.5 * (self.grid.z[1:] + self.grid.z[:-1])
@@ -101,9 +104,9 @@ class Intervals:
     """(n,) sample of the motion at which the bite passes"""
 
 
-def intervals(sweep: Sweep, rings: Rings, low: Ints) -> Intervals:
-    """Everything that any bite removes of the rings in the blocks `low` (n, 3)."""
-    ring, place, bite, instant = _removed(sweep, rings, *_touched(sweep, rings.grid, low))
+def intervals(sweep: Sweep, rings: Rings, blocks: Blocks) -> Intervals:
+    """Everything that any bite removes of the rings in a slab's blocks, before all around is gone."""
+    ring, place, bite, instant = _removed(sweep, rings, blocks.low, blocks.lists)
     order = np.lexsort((place, bite, ring))
     ring, place, bite, instant = ring[order], place[order], bite[order], instant[order]
     sectors = rings.grid.sectors
@@ -124,7 +127,7 @@ def intervals(sweep: Sweep, rings: Rings, low: Ints) -> Intervals:
     middle = (first + last) // 2
     rows = np.flatnonzero(~gone)
     first, last, middle = first[rows], last[rows], middle[rows]
-    passed = pass_order(sweep, bite)
+    passed = sweep.order(bite)
     taken = _Taken.of(ring * sectors + place, passed, np.append(~begins[1:], False)[: len(ring)])
     sides = []
     for places, way in ((begin[rows], -1), (place[last], 1)):
@@ -163,59 +166,6 @@ class _Taken:
             return np.zeros(len(place), dtype=bool)
         at = np.minimum(np.searchsorted(self.place, place), len(self.place) - 1)
         return (self.place[at] == place) & (self.passed[at] < passed)
-
-
-def pass_order(sweep: Sweep, bite: Ints) -> Ints:
-    """Number (n,) of each bite's pass in the order of time: at any one place passes come in this order."""
-    order = np.zeros(len(bite), dtype=np.int64)
-    first = passed = 0
-    for field in sweep.fields:
-        here = (bite >= first) & (bite < first + field.count)
-        order[here] = passed + (bite[here] - first) // field.bites
-        first, passed = first + field.count, passed + field.passes.count
-    return order
-
-
-def _touched(sweep: Sweep, grid: Grid, low: Ints) -> tuple[Ints, Candidates]:
-    """The finest blocks that some bite may touch, and those bites."""
-    size = COARSEST
-    middle, radius = _balls(grid, low, size)
-    lists = sweep.near(middle, radius)
-    while True:
-        some = np.flatnonzero(np.diff(lists.start))
-        low, lists = low[some], lists.of(some)
-        if size == FINEST:
-            return low, lists
-        size //= 2
-        steps = size * np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
-        parent = np.repeat(np.arange(len(low)), 8)
-        low = (low[:, None] + steps).reshape(-1, 3)
-        inside = (low[:, 0] < grid.cells[0]) & (low[:, 2] < grid.cells[2])
-        low = low[inside]
-        lists = _culled(sweep, *_balls(grid, low, size), lists.of(parent[inside]))
-
-
-def _balls(grid: Grid, low: Ints, size: int) -> tuple[Floats, Floats]:
-    """Middles (n, 3) of blocks and the distance (n,) of their farthest corners."""
-    middle, corners = grid.hulls(low, size)
-    return middle, np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
-
-
-def _culled(sweep: Sweep, middle: Floats, radius: Floats, lists: Candidates) -> Candidates:
-    """The lists without the bites that cannot touch the balls, or that come when all of a ball is gone."""
-
-    def work(part: slice) -> Candidates:
-        own = lists.of(np.arange(part.start, part.stop))
-        owner = own.owner()
-        meeting = sweep.evaluate(middle[owner + part.start], own.bites)
-        change, _ = sweep.bound(meeting, own.bites, radius[owner + part.start])
-        order = pass_order(sweep, own.bites)
-        gone = np.full(own.count, np.iinfo(np.int64).max)
-        whole = meeting.depth - change > 0
-        np.minimum.at(gone, owner[whole], order[whole])
-        return own.where((meeting.depth + change > 0) & (order <= gone[owner]))
-
-    return join(in_parallel(work, batches(lists.start, LISTED)))
 
 
 def _removed(sweep: Sweep, rings: Rings, low: Ints, lists: Candidates) -> tuple[Ints, Ints, Ints, Floats]:

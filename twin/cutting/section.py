@@ -32,9 +32,15 @@ class Section:
 
     def contains(self, points: Floats) -> NDArray[np.bool_]:
         """Whether points (n, 3) lie strictly inside, at whatever height."""
+        return self.beyond(points)[0] < 0.0
+
+    def beyond(self, points: Floats) -> tuple[Floats, Floats]:
+        """How far (n,) points (n, 3) lie beyond the line of the outline's side in their direction, negative
+        inside [mm], and the gradient (n, 3) of that."""
         x, y = self.outline.T
         start = np.arctan2(y[0], x[0])
-        angle = (np.arctan2(points[:, 1], points[:, 0]) - self.twist * points[:, 2] - start) % (2 * math.pi)
+        turned = self.twist * points[:, 2]
+        angle = (np.arctan2(points[:, 1], points[:, 0]) - turned - start) % (2.0 * math.pi)
         around = (np.arctan2(y, x) - start) % (2.0 * math.pi)
         k = np.searchsorted(around, angle, side="right") - 1
         ahead = (k + 1) % len(x)
@@ -42,7 +48,12 @@ class Section:
             [np.cos(angle + start), np.sin(angle + start)], axis=1
         )
         way, off = self.outline[ahead] - self.outline[k], here - self.outline[k]
-        return way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0] > 0.0
+        out = np.stack([way[:, 1], -way[:, 0]], axis=1) / np.linalg.norm(way, axis=1)[:, None]
+        cos, sin = np.cos(turned), np.sin(turned)
+        across, along = cos * out[:, 0] - sin * out[:, 1], sin * out[:, 0] + cos * out[:, 1]
+        # a step up turns the section on under the point
+        rise = self.twist * (across * points[:, 1] - along * points[:, 0])
+        return (out * off).sum(axis=1), np.stack([across, along, rise], axis=1)
 
     def gaps(self, radius: float) -> Floats:
         """(m, 2) stretches of a circle at height 0 that lie outside, from and to [rad]; 0 <= from < 2π."""

@@ -256,6 +256,16 @@ class Sweep:
                 slope[who[higher]] = other.gradient[at[higher]]
         return Deepest(floor, slope, leading, instant)
 
+    def order(self, bite: Ints) -> Ints:
+        """Number (m,) of each bite's pass in the order of time: at any one place passes come so."""
+        order = np.zeros(len(bite), dtype=np.int64)
+        passed = 0
+        for n, f in enumerate(self.fields):
+            here = self._of(n, bite)
+            order[here] = passed + (bite[here] - self._first[n]) // f.bites
+            passed += f.passes.count
+        return order
+
     def tool(self, bite: Ints) -> Ints:
         """Number (m,) of the tool that each bite belongs to."""
         return np.searchsorted(self._first, bite, side="right") - 1

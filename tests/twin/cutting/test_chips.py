@@ -68,10 +68,8 @@ def test_each_chip_is_the_crescent_between_two_turns(flown):
     np.testing.assert_allclose(flown.volume_mm3, 2.0 * areas, rtol=0.02)
     # two millimetres of the edge and, up to the chip's thickness, its ends; in squares of 0.2 mm
     np.testing.assert_allclose(flown.width_mm, 2.0 + 2.0 * np.array(STEPS), atol=0.8)
-    # thickest in the middle, where the slide's step is the height above the edge
-    np.testing.assert_allclose(flown.thickness_max_mm[1:], STEPS[1:], rtol=0.02)
-    # the first is thickest on the bar's own surface: the outermost ring is half a step below that
-    assert STEPS[0] - flown.thickness_max_mm[0] == pytest.approx(flown.resolution_mm / 2.0, rel=0.02)
+    # thickest in the middle, where the slide's step is the height above the edge; the first on the bar itself
+    np.testing.assert_allclose(flown.thickness_max_mm, STEPS, rtol=1e-3)
     assert (np.diff(flown.time_s) > 0.5).all()
     np.testing.assert_array_equal(flown.tooth, 0)
 
@@ -91,7 +89,7 @@ def test_mean_thickness_is_twice_the_mean_height(flown):
 def test_twice_the_resolution_changes_no_chip_by_two_percent(flown, synthetic):
     finer = chips(BAR, (fly_cutting(synthetic),), resolution_mm=flown.resolution_mm / 2.0)
     np.testing.assert_allclose(flown.volume_mm3, finer.volume_mm3, rtol=0.02)
-    np.testing.assert_allclose(flown.thickness_max_mm[1:], finer.thickness_max_mm[1:], rtol=0.02)
+    np.testing.assert_allclose(flown.thickness_max_mm, finer.thickness_max_mm, rtol=1e-3)
     np.testing.assert_allclose(flown.thickness_mean_mm, finer.thickness_mean_mm, rtol=0.02)
 
 
@@ -123,9 +121,7 @@ def test_twice_the_resolution_changes_no_hobbed_chip_by_two_percent(synthetic):
     same = [named[key] for key in zip(fine.turn[rows], fine.tooth[rows], strict=True)]
     np.testing.assert_allclose(coarse.volume_mm3[same], fine.volume_mm3[rows], rtol=0.02)
     np.testing.assert_allclose(coarse.thickness_mean_mm[same], fine.thickness_mean_mm[rows], rtol=0.02)
-    # a wedge's tip may stand between two rings
-    off = coarse.thickness_max_mm[same] / fine.thickness_max_mm[rows] - 1.0
-    assert np.quantile(np.abs(off), 0.8) < 0.02
+    np.testing.assert_allclose(coarse.thickness_max_mm[same], fine.thickness_max_mm[rows], rtol=0.02)
     assert coarse.total_mm3 == pytest.approx(fine.total_mm3, rel=1e-3)
 
 
