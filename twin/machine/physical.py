@@ -153,7 +153,8 @@ class MujocoMachine:
 
         Plain floats in one loop: on arrays this short numpy would cost more than the physics.
         """
-        model, data, stylus, tripped = self.assembly.joints_alone, self.data, self._stylus, self._tripped
+        model, data, tripped = self.assembly.joints_alone, self.data, self._tripped
+        stylus = self._stylus if self._stylus is not None and self._stylus.busy else None
         step, substeps = mujoco.mj_step, self.assembly.spec.substeps
         gears = [self._gear(c) for c in chunk.couplings]
         slaves = [slave for _, slave, _, _ in gears]

@@ -98,6 +98,8 @@ class Stylus:
         self._in_place: list[bool] = []
         self._watched = False
         self._pushed = 0.0
+        self.busy = False
+        """whether it swings or is in place in the chunk at hand"""
         self._swing(inwards=False)
         self._face(0.0)
         self.alarm: MachineAlarm | None = None
@@ -106,7 +108,9 @@ class Stylus:
     def begin(self, chunk: Chunk) -> None:
         """Take up a chunk. Raises MachineError for a skip without the probe in its place."""
         self._watched = require_probe(chunk, self._mount.probe)
-        self._in_place = (chunk.tool == self._mount.probe.tool).tolist()
+        in_place = chunk.tool == self._mount.probe.tool
+        self._in_place = in_place.tolist()
+        self.busy = self._inside or bool(in_place.any())
         if not self._watched:
             self._trigger.rest()
 
