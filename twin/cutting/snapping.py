@@ -18,8 +18,10 @@ FINEST = 2.0**-17
 """[mm] of the grid at least: 7.6 nm"""
 MANTISSA = 24
 """bits of a number in single precision"""
-ROUNDS = 16
+ROUNDS = 64
 """of parting what may not be joined"""
+WIDER = 4
+"""rounds after which it may be parted a grid step wider"""
 
 
 def grid_step(vertices: Floats) -> float:
@@ -50,7 +52,8 @@ def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints, Ints]:
         places[apart] = nearest[apart] + _towards_neighbours(vertices, faces)[apart]
         if turn:
             # what is drawn the same way stays together: any other way does
-            places[apart] += rng.integers(-1, 2, (apart.sum(), 3))
+            far = 1 + turn // WIDER
+            places[apart] += rng.integers(-far, far + 1, (apart.sum(), 3))
         left, kept, number, met = _joined(places, faces)
     first = np.zeros(len(met), dtype=np.int64)
     first[number] = np.arange(len(number))

@@ -50,6 +50,31 @@ def split_apart(vertices, faces, rng, apart):
     return vertices, faces
 
 
+def tangled(vertices, faces, rng, spread, times):
+    """The mesh with one facet split into a tangle of vertices about `spread` from its first corner."""
+    vertices, faces, open_ = list(vertices), [tuple(face) for face in faces], [0]
+    at = vertices[faces[0][0]]
+    for _ in range(times):
+        k = open_[rng.integers(len(open_))]
+        (a, b, c), m = faces[k], len(vertices)
+        vertices.append(at + spread * rng.normal(size=3))
+        open_ += [len(faces), len(faces) + 1]
+        faces[k] = a, b, m
+        faces += [(b, c, m), (c, a, m)]
+    return np.array(vertices), np.array(faces)
+
+
+@pytest.mark.parametrize("spread", [0.5, 1.0, 2.0])
+def test_a_tangle_far_below_single_precision_is_parted(spread):
+    """Some 1500 vertices within a few grid steps: where slivers meet that the boolean has left."""
+    ball = trimesh.creation.icosphere(subdivisions=1, radius=10.0)
+    step = grid_step(ball.vertices)
+    mesh = tangled(ball.vertices, ball.faces, np.random.default_rng(3), spread * step, 1500)
+    vertices, faces, _ = snapped(*mesh)
+    assert_closed(faces)
+    assert volume(vertices, faces) == pytest.approx(ball.volume, rel=1e-6)
+
+
 @pytest.mark.parametrize("suffix", WRITERS)
 @pytest.mark.parametrize("size", [0.3, 7.9, 63.99, 64.0, 127.9, 1999.0])
 def test_slivers_below_single_precision_leave_no_gap(tmp_path, suffix, size):
