@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_banded
 
 from twin.load.forces import Stiff
 from twin.load.timeline import COLUMNS, CuttingLoad
@@ -20,6 +21,8 @@ from twin.load.timeline import COLUMNS, CuttingLoad
 Floats = NDArray[np.float64]
 
 UM = 1e3
+BAND = 5
+"""diagonals to either side: of three components each, those of the next tick"""
 
 
 def balanced(found: Stiff, before: CuttingLoad, given: Floats, *, first: int) -> CuttingLoad:
@@ -37,10 +40,10 @@ def balanced(found: Stiff, before: CuttingLoad, given: Floats, *, first: int) ->
     share, held = _shares(count)
     (last,) = before.tool_force(np.array([first - 1]))
     known = held[:, None] * last * compliance
-    # F − S (c · share · F) = F₀ + S (known − δ₀)
+    # F − S (c · share · F) = F₀ + S (known − δ₀); each tick knows its neighbours alone
     system = np.eye(3 * count) - np.einsum("kij,kl->kilj", compliance * slope, share).reshape(3 * count, -1)
     right = forces + np.einsum("kij,kj->ki", slope, known - given / UM)
-    solved = np.linalg.solve(system, right.reshape(-1)).reshape(count, 3)
+    solved = solve_banded((BAND, BAND), _bands(system), right.reshape(-1)).reshape(count, 3)
     moved = (known + compliance * share @ solved - given / UM)[tick]
     columns = {
         name: getattr(load, name) + np.einsum("n...j,nj->n...", getattr(found, name), moved)
@@ -50,6 +53,16 @@ def balanced(found: Stiff, before: CuttingLoad, given: Floats, *, first: int) ->
     cuts = columns["power_w"] > 0.0
     columns = {name: np.where(cuts.reshape(-1, *[1] * (v.ndim - 1)), v, 0.0) for name, v in columns.items()}
     return replace(load, **columns)
+
+
+def _bands(matrix: Floats) -> Floats:
+    """(2 BAND + 1, n) diagonals of a matrix (n, n), from the highest on, as LAPACK wants them."""
+    n = len(matrix)
+    out = np.zeros((2 * BAND + 1, n))
+    for row in range(2 * BAND + 1):
+        off = BAND - row
+        out[row, max(off, 0) : n + min(off, 0)] = np.diagonal(matrix, off)
+    return out
 
 
 def _shares(count: int) -> tuple[Floats, Floats]:
