@@ -93,8 +93,8 @@ class Reach:
         field, motion, stock, p = self._field, self._motion, self._stock, self._field.passes
         standing = self._facing(passes)
         x, y, z = motion.mount.moved(stock.points(standing, stock.end[standing])).T
-        towards, across = motion.basis[0], motion.basis[1]
-        radius = field.cutter.radius
+        towards, across, axis = motion.basis
+        radius, profile = field.cutter.radius, field.cutter.profile
         rays: list[Ints] = [np.zeros(0, np.int64)]
         for index in passes:
             cos, sin = math.cos(self._work[index]), math.sin(self._work[index])
@@ -102,11 +102,15 @@ class Reach:
             off_x, off_y, off_z = x * cos - y * sin - middle[0], x * sin + y * cos - middle[1], z - middle[2]
             a = off_x * towards[0] + off_y * towards[1] + off_z * towards[2]
             b = off_x * across[0] + off_y * across[1] + off_z * across[2]
-            rho, turn = np.hypot(a, b), np.arctan2(b, a)
+            near = np.flatnonzero(a * a + b * b < (radius + p.travel[index] + SLACK) ** 2)
+            rho, turn = np.hypot(a[near], b[near]), np.arctan2(b[near], a[near])
+            s = off_x[near] * axis[0] + off_y[near] * axis[1] + off_z[near] * axis[2] - p.shift[index]
             # the sooner or later the edge comes, the further the stock has gone on
-            way = p.travel[index] * np.minimum(np.abs(turn) / REACH, 1.0) + SLACK
-            near = rho < radius + way
-            rays.append(standing[near & self._timely(index, turn, radius + way - rho)])
+            later = (np.abs(turn) + self._along) / (REACH + self._along)
+            way = p.travel[index] * np.minimum(later, 1.0) + SLACK
+            # depth grows no faster than the way
+            meets = profile.depth(s, rho)[0] > -way
+            rays.append(standing[near[meets & self._timely(index, turn, radius + way - rho)]])
         return np.concatenate(rays), np.repeat(passes, [len(one) for one in rays[1:]])
 
     def _timely(self, index: int, turn: Floats, deep: Floats) -> NDArray[np.bool_] | bool:

@@ -3,8 +3,9 @@
 Forces of a tick depend on motion and metal up to it alone. So a run is made in windows of some ticks, each
 final before the next one begins. In a window the machine goes ahead under forces that are tried, on a copy;
 the metal that it takes away so gives those of the next round, mounts in balance with them, until a round
-moves nothing any more. A window that eight rounds do not settle is halved: in shorter ones the drives have
-less time to answer, and at the shortest there is nothing left but mounts and metal.
+moves nothing any more. A window that eight rounds do not settle, or will not at their pace, is halved: in
+shorter ones the drives have less time to answer, and at the shortest there is nothing left but mounts and
+metal.
 """
 
 from dataclasses import dataclass, replace
@@ -31,9 +32,13 @@ from twin.setup import Ready
 Floats = NDArray[np.float64]
 
 MOST_ROUNDS = 8
+FEW_ROUNDS = 5
+"""after which a longer window may be tried, and from which on rounds must be on their way to settle"""
 SETTLED_UM = 0.1
 """by how much the last round may still have moved the part's surface"""
-TICKS = 32
+HOPE = 3.0
+"""times as much as that, at the pace of the last two rounds, is worth to go on for"""
+TICKS = 128
 """of a window in which metal is cut, where the job's controller knows as many ahead"""
 LONGEST = 1024
 """[ticks] of one in which none is"""
@@ -91,25 +96,30 @@ class Rounds:
         self.windows: list[Settled] = []
         """in which metal was cut"""
         self._acted = self._tail = self.bench.no_load
-        self._shortest, self._ticks = ticks, LONGEST
+        self._most = self._cutting = ticks
+        """ticks of a window in which metal is cut: at most, and as the last ones have settled"""
+        self._ticks = LONGEST
 
     def go(self) -> None:
         """Go on to the program's end, or to a window that does not settle or in which the tool stops."""
         while (chunk := self._ahead(self._ticks)) is not None:
-            clear = self._clear(chunk) if chunk.ticks > self._shortest else 0
-            if clear >= self._shortest:
+            clear = self._clear(chunk) if chunk.ticks > self._cutting else 0
+            if clear >= self._cutting:
                 self._take(self._shorter(chunk, clear))
                 self._ticks = min(2 * self._ticks, LONGEST)
                 continue
-            chunk = self._shorter(chunk, self._shortest)
+            chunk = self._shorter(chunk, self._cutting)
             result = self._settle(chunk)
             while not result.settled and result.chunk.ticks > 1:
-                result = self._settle(self._shorter(chunk, result.chunk.ticks // 2))
+                self._cutting = result.chunk.ticks // 2
+                result = self._settle(self._shorter(chunk, self._cutting))
+            if result.rounds <= FEW_ROUNDS and result.chunk.ticks == self._cutting:
+                self._cutting = min(2 * self._cutting, self._most)
             self._take(result.chunk, result)
             if len(result.load.cell):
                 self.windows.append(result)
             idle = not len(result.load.cell) and not len(self._tail.cell)
-            self._ticks = min(2 * self._ticks, LONGEST) if idle else self._shortest
+            self._ticks = min(2 * self._ticks, LONGEST) if idle else self._cutting
             if not result.settled or result.stalled:
                 return
 
@@ -165,7 +175,7 @@ class Rounds:
             motion = bench.motion(tool, span, give)
             if before is not None:
                 moved.append(self._moved(before, motion, load.tick[load.tick < span.until]))
-                if moved[-1] < SETTLED_UM or len(moved) == MOST_ROUNDS - 1:
+                if _over(moved, chunk.ticks):
                     mine = metal.of(metal.middle_s < span.until * bench.tick_s)
                     return Settled(
                         chunk=chunk,
@@ -227,6 +237,17 @@ class Rounds:
         turns = round((angle[-1] - np.interp(ticks[-1] - back, ticks, angle)) / 360.0)
         later = self._acted.later(back, turns)
         return later.since(self.course.tick).before(chunk.first_tick + chunk.ticks + 2 * REACH)
+
+
+def _over(moved: list[float], ticks: int) -> bool:
+    """Whether rounds of a window of some `ticks` that have `moved` the part so far [µm] come to their end:
+    settled, all of them made, or, where a shorter window may do, at a pace that will not settle it."""
+    left = MOST_ROUNDS - 1 - len(moved)
+    if moved[-1] < SETTLED_UM or not left:
+        return True
+    if ticks == 1 or len(moved) < FEW_ROUNDS - 1:
+        return False
+    return moved[-1] * (moved[-1] / moved[-2]) ** left > HOPE * SETTLED_UM
 
 
 def _turn(load: CuttingLoad, most: int) -> int:

@@ -20,7 +20,7 @@ Ints = NDArray[np.int64]
 
 RAYS_PER_PITCH = 18.0
 """or on the width of an edge, where the job names no resolution"""
-INCLINED_PER_PITCH = 10.0
+INCLINED_PER_PITCH = 14.0
 """the same of inclined rays, which the edges meet one by one"""
 RAYS = 60_000
 """that a count has at most where the job names no resolution; it may have ten times as many"""
