@@ -74,6 +74,8 @@ class Ready:
     """of the work spindle among the system axes"""
     tool_column: int
     """of the tool spindle"""
+    work: WorkMount
+    """how the work is clamped"""
     probe: MountedProbe | None = None
 
     @property
@@ -131,6 +133,7 @@ def make_ready(job: Job, cutters: dict[int, Cutter], *, lowest_z_mm: float | Non
         tools=tuple(tools),
         work_column=tools[0].kinematics.work.spindle.column,
         tool_column=tools[0].kinematics.tool.spindle.column,
+        work=work,
         probe=_probe(
             job,
             tools[0].kinematics,

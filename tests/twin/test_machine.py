@@ -166,6 +166,8 @@ def edited(tmp_path: Path, *edits: tuple[str, str], file: str = "machine.toml") 
             "unknown key 'kv' (valid: kind, travel_per_turn, motor_inertia",
         ),
         ("in_position = 0.005 ", "# ", "drives.x_slide: key 'in_position' is missing"),
+        ("work_stiffness = 60.0", "work_stiffness = 0.0", "mounts: work_stiffness = 0: must be above 0"),
+        ("work_stiffness = 60.0", "stiffness = 60.0", "mounts: unknown key 'stiffness'"),
         ("physics_step_s = 0.001", "physics_step_s = 0.0003", "is 3.33333 physics steps of 0.0003 s"),
         ("physics_step_s = 0.001", "physics_step_s = 0.003", "is 0.333333 physics steps of 0.003 s"),
         ("physics_step_s = 0.001", "physics_step_s = 0.0", "machine: physics_step_s = 0: must be above 0"),

@@ -101,6 +101,8 @@ CUTTING_LOAD: Mapping[str, Quantity] = {
             "frequency_hz",
             "k_c11",
             "m_c",
+            "tool_stiffness_n_per_um",
+            "work_stiffness_n_per_um",
             "removed_mm3",
             "energy_j",
             "mean_power_w",

@@ -44,13 +44,14 @@ class MachineTable:
     physics_step_s: float | None = None
     drives: dict[str, dict[str, float | str]] = field(default_factory=dict)
     """joint -> key of machine.toml -> value in place of the model's"""
+    mounts: dict[str, float] = field(default_factory=dict)
+    """the same of what carries tool and work"""
 
     def changes(self) -> dict[str, Any]:
         """What the job changes of the model's parameter file, laid out as the file is."""
         periods = {"control_period_s": self.control_period_s, "physics_step_s": self.physics_step_s}
-        return {k: v for k, v in periods.items() if v is not None} | (
-            {"drives": self.drives} if self.drives else {}
-        )
+        tables = {"drives": self.drives, "mounts": self.mounts}
+        return {k: v for k, v in periods.items() if v is not None} | {k: v for k, v in tables.items() if v}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,6 +13,7 @@ from twin.load.material import material_of
 from twin.load.reach import may_meet
 from twin.load.removal import Removal, pieces, removal
 from twin.load.span import Span, span_of
+from twin.load.stiffness import stiffness_of
 from twin.load.stock import Stock
 from twin.load.timeline import no_load
 from twin.session import tool_in_place
@@ -31,8 +32,9 @@ class Bench:
         self.material = material_of(job.work.material, job.physics)
         self.blank = job.work.blank()
         self.tick_s = ready.spec.control_period_s
+        self.stiffness = stiffness_of(job, ready)
         self.no_load = no_load(
-            ready.tool_column, ready.tools[0].kinematics.axes, job.physics.compliance_um_per_n
+            ready.tool_column, ready.tools[0].kinematics.axes, self.stiffness.compliance_um_per_n
         )
         self._physics, self._ready = job.physics, ready
 
@@ -78,6 +80,7 @@ class Bench:
             material=self.material,
             physics=self._physics,
             clock=Clock(tick_s=self.tick_s, tick=span.tick, tool_angle_deg=angle),
+            compliance_um_per_n=self.stiffness.compliance_um_per_n,
             since=span.first,
         )
 

@@ -31,6 +31,8 @@ def load_figures(loaded: LoadedRun | None) -> dict[str, object]:
             "mean_torque": loaded.mean_torque,
             "k_c11": loaded.material.k_c11,
             "m_c": loaded.material.m_c,
+            "tool_stiffness_n_per_um": loaded.stiffness.tool,
+            "work_stiffness_n_per_um": loaded.stiffness.work,
             "removed_mm3": loaded.removed_mm3,
             "energy_j": loaded.energy_j,
             "mean_power_w": loaded.mean_power_w,
@@ -59,7 +61,7 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
             f"{loaded.mean_torque:.3g} N m, at most {figures[f'largest_{tool}']:.3g} of the drive's "
             f"{loaded.torque_limit:.3g}",
         ),
-        ("Give", f"up to {figures['largest_deflection_um']:.3g} µm"),
+        ("Give", f"up to {figures['largest_deflection_um']:.3g} µm: {loaded.stiffness.words()}"),
         (
             "Rounds",
             f"{loaded.mean_rounds:.2g} in a window, at most {loaded.rounds}; {loaded.windows} windows, "
@@ -78,6 +80,6 @@ def load_words(loaded: LoadedRun) -> str:
         f"{state} in {loaded.windows} windows of at most {loaded.rounds} rounds; "
         f"{figures['removed_mm3']:.1f} mm³ for {figures['energy_j'] / 1e3:.3g} kJ; "
         f"power while cutting {figures['mean_power_w']:.0f} W, at most "
-        f"{figures['largest_power_w']:.0f} W; mounts give way by up to "
-        f"{figures['largest_deflection_um']:.3g} µm (rays {loaded.resolution_mm:.2g} mm apart)"
+        f"{figures['largest_power_w']:.0f} W; give of up to {figures['largest_deflection_um']:.3g} µm "
+        f"(rays {loaded.resolution_mm:.2g} mm apart); {loaded.stiffness.words()}"
     )

@@ -86,9 +86,11 @@ def cutting_load(
     material: Material,
     physics: Physics,
     clock: Clock,
+    compliance_um_per_n: float,
     since: int = 0,
 ) -> Stiff:
-    """The forces that removing the metal puts on axes and tool, those from tick `since` on."""
+    """The forces that removing the metal puts on axes and tool, those from tick `since` on, whose mounts give
+    way by `compliance_um_per_n`."""
     tick_s, axes = clock.tick_s, kinematics.axes
     energy = material.specific_force(metal.thickness_mm) * metal.volume_mm3
     sides = _Sides(metal, motion)
@@ -115,7 +117,7 @@ def cutting_load(
         tool=mean[:, axes : axes + 3],
         power_w=mean[:, axes + 3],
         removed_mm3=mean[:, axes + 4],
-        compliance_um_per_n=physics.compliance_um_per_n,
+        compliance_um_per_n=compliance_um_per_n,
     )
     return Stiff(
         load=load,

@@ -13,6 +13,7 @@ from twin.job.schema import Job
 from twin.load.change import dominant_hz
 from twin.load.material import Material
 from twin.load.rounds import TICKS, Rounds, Settled
+from twin.load.stiffness import Stiffness
 from twin.load.timeline import CuttingLoad, joined
 from twin.load.walls import slope_of
 from twin.session import Session, session_of
@@ -32,6 +33,7 @@ class LoadedRun:
     load: CuttingLoad
     """that acted on it"""
     material: Material
+    stiffness: Stiffness
     windows: int
     """in which metal was cut"""
     rounds: int
@@ -103,6 +105,7 @@ def run_under_load(
         session=session,
         load=load,
         material=rounds.bench.material,
+        stiffness=rounds.bench.stiffness,
         windows=len(windows),
         rounds=hardest.rounds if hardest else 1,
         mean_rounds=float(np.mean([one.rounds for one in windows])) if windows else 1.0,

@@ -62,17 +62,12 @@ class Physics:
     """F_f/F_c, along the tool's axis where the edge faces that way (0.3-0.5)"""
     passive_force_ratio: Share = 0.4
     """F_p/F_c, towards the tool's axis where the edge faces away from it (0.3-0.5)"""
-    tool_stiffness_n_per_um: Positive = 100.0
-    """of tool, arbor and carrier against the slide, the same in every direction [plausible]"""
-    work_stiffness_n_per_um: Positive = 60.0
-    """of work, arbor and spindle against the bed, the same in every direction [plausible]"""
+    tool_stiffness_n_per_um: Positive | None = None
+    """of tool, arbor and carrier against the slide, in place of the machine's"""
+    work_stiffness_n_per_um: Positive | None = None
+    """of work, arbor and spindle against the bed, in place of the machine's"""
     load_resolution_mm: Positive | None = None
     """distance of the rays on which metal is counted; None = a share of the tooth pitch or edge width"""
-
-    @property
-    def compliance_um_per_n(self) -> float:
-        """Of both mounts together, springs in a row."""
-        return 1.0 / self.tool_stiffness_n_per_um + 1.0 / self.work_stiffness_n_per_um
 
 
 def material_of(name: str, physics: Physics) -> Material:

@@ -31,6 +31,11 @@ class WorkMount:
     stick_out_mm: float | None = None
     """front face from the chuck's face; None = length + 80"""
 
+    @property
+    def stick_out(self) -> float:
+        """The same where it is left open, too [mm]."""
+        return self.length_mm + 80.0 if self.stick_out_mm is None else self.stick_out_mm
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolMount:
@@ -125,7 +130,7 @@ def assemble(
     _require_parts(mjcf, spec, setup)
     _clamp_unused(mjcf, spec, setup)
     _apply_drives(mjcf, spec, setup)
-    stick_out = work.length_mm + 80.0 if work.stick_out_mm is None else work.stick_out_mm
+    stick_out = work.stick_out
     _mount_work(mjcf, work, stick_out)
     if tailstock is not None:
         mount_tailstock(mjcf, tailstock, stick_out)

@@ -3,7 +3,7 @@
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 from importlib.resources import files
 from pathlib import Path
@@ -44,6 +44,16 @@ class Changes:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Mounts:
+    """What carries tool and work, between the axes and the metal; the same in every direction [N/µm]."""
+
+    tool_stiffness: float
+    """of tool, arbor and carrier against the slide"""
+    work_stiffness: float
+    """of work, arbor and spindle against the bed, with a tailstock"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MachineSpec:
     """A machine's parameter file."""
 
@@ -57,6 +67,7 @@ class MachineSpec:
     """joint names in system axis order; joints not named are clamped"""
     drives: dict[str, Drive]
     """by joint name"""
+    mounts: Mounts
     changes: Changes | None = None
     """what the job has changed"""
 
@@ -99,7 +110,9 @@ def load_machine(name: str, *, models: Path = MODELS, changes: Changes | None = 
         return changes.place(path) if changes and changes.holds(path) else place
 
     reader = ParameterReader(table, changes.table if changes else {}, place_of)
-    reader.keys((), ("control_period_s", "physics_step_s", "setups", "drives"))
+    reader.keys((), ("control_period_s", "physics_step_s", "setups", "drives", "mounts"))
+    mounts = tuple(f.name for f in fields(Mounts))
+    reader.keys(("mounts",), mounts)
     reader.keys(("setups",), tuple(s.value for s in Setup))
     spec = MachineSpec(
         name=name,
@@ -108,6 +121,7 @@ def load_machine(name: str, *, models: Path = MODELS, changes: Changes | None = 
         physics_step_s=reader.positive(("physics_step_s",)),
         setups={s: reader.joints(("setups", s.value)) for s in Setup},
         drives={joint: reader.drive(joint) for joint in reader.table(("drives",))},
+        mounts=Mounts(**{name: reader.positive(("mounts", name)) for name in mounts}),
         changes=changes,
     )
     _require_whole_steps(spec)

@@ -112,6 +112,7 @@ def test_force_is_kienzle_s_on_the_insert_and_opposes_its_way(fly, tmp_path):
         kinematics=Polygon(tmp_path, physics="").ready.tools[0].kinematics,
         material=material,
         physics=Physics(feed_force_ratio=0.0, passive_force_ratio=0.4),
+        compliance_um_per_n=0.0,
         clock=Clock(tick_s=1e-3, tick=np.arange(2880), tool_angle_deg=np.degrees(motion.tool_angle)),
     ).load.whole()
     middle = np.abs(load.tick - 2520) < 12
@@ -139,6 +140,7 @@ def test_energy_of_the_metal_is_the_work_of_the_axes(tmp_path):
         kinematics=ready.tools[0].kinematics,
         material=MATERIALS["16MnCr5"],
         physics=polygon.job.physics,
+        compliance_um_per_n=0.0,
         clock=clock,
     ).load.whole()
     row = np.searchsorted(clock.tick, load.tick)

@@ -61,6 +61,7 @@ def test_forces_that_acted_are_those_of_the_delivered_motion(tmp_path):
         kinematics=ready.tools[0].kinematics,
         material=material_of(job.work.material, job.physics),
         physics=job.physics,
+        compliance_um_per_n=loaded.stiffness.compliance_um_per_n,
         clock=clock_of(session.recording),
     ).load
     ticks = np.arange(len(session.recording.time_s))
