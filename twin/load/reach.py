@@ -17,6 +17,8 @@ Ints = NDArray[np.int64]
 
 ROUNDING = 1e-9
 """[rad]"""
+UPRIGHT = 0.9
+"""cosine of a tool's axis and the work's from which on its edges have a height"""
 FASTEST = 0.6
 """share of the edge's speed that the stock may have for its meeting to be foretold"""
 
@@ -132,18 +134,32 @@ class Reach:
         return self._centre[passes, 0] - travel - high - SLACK - self._shift
 
     def _facing(self, passes: Ints) -> Ints:
-        """Rays that still stand, and on the side of the work where some passes' edges can come to them.
+        """Rays that still stand, and where some passes' edges can come to them: at their height, and on the
+        side of the work that the tool is on.
 
         Metal at an angle φ from the tool stands at most its radius · cos φ nearer to it, and what the
         clamping shifts.
         """
         stock, work = self._stock, self._work[passes]
-        high = float(stock.end.max(initial=0.0))
-        least = float(self._nearest(passes).min(initial=np.inf)) + high - self._field.cutter.radius
-        standing = stock.end > stock.inner
+        low, high = self._heights(passes)
+        height = stock.z + stock.slope * stock.end
+        standing = (stock.end > stock.inner) & (height > low) & (height < high)
+        far = float(stock.end.max(initial=0.0))
+        least = float(self._nearest(passes).min(initial=np.inf)) + far - self._field.cutter.radius
         if least > 0.0:
-            half = math.acos(min(least / high, 1.0)) + 0.5 * float(np.ptp(work)) + ROUNDING
+            half = math.acos(min(least / far, 1.0)) + 0.5 * float(np.ptp(work)) + ROUNDING
             middle = -0.5 * float(work.min() + work.max())
             if half < math.pi:
                 standing &= stock.cos * math.cos(middle) + stock.sin * math.sin(middle) >= math.cos(half)
         return np.flatnonzero(standing)
+
+    def _heights(self, passes: Ints) -> tuple[float, float]:
+        """Lowest and highest z that the edges of some passes come to, where they are single teeth [mm]."""
+        profile, axis, p = self._field.cutter.profile, self._motion.basis[2], self._field.passes
+        if math.isfinite(profile.pitch) or not len(passes) or abs(axis[2]) < UPRIGHT:
+            return -math.inf, math.inf
+        lean = math.hypot(axis[0], axis[1]) * (2.0 * self._field.cutter.radius + self._stock.farthest)
+        half = profile.half_width + float(np.abs(p.shift[passes]).max()) + lean
+        reach = half / abs(axis[2]) + float(p.carried[passes].max()) + self._shift + SLACK
+        middle = self._centre[passes, 2]
+        return float(middle.min()) - reach, float(middle.max()) + reach
