@@ -92,13 +92,18 @@ POLYGON: Mapping[str, Quantity] = {
 KEYS: Mapping[str, Quantity] = {**COMMON, **GEAR, **POLYGON}
 """of the part"""
 CUTTING_LOAD: Mapping[str, Quantity] = {
-    "cutting_load.settled": Quantity.FLAG,
+    **dict.fromkeys(("cutting_load.settled", "cutting_load.stalled"), Quantity.FLAG),
     **dict.fromkeys(("cutting_load.windows", "cutting_load.rounds"), Quantity.COUNT),
     **{
         f"cutting_load.{name}": Quantity.NUMBER
         for name in (
+            "mean_rounds",
             "moved_um",
             "frequency_hz",
+            "torque_limit",
+            "mean_torque",
+            "torque_line_hz",
+            "torque_line",
             "k_c11",
             "m_c",
             "tool_stiffness_n_per_um",

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from twin.load.lines import Line
 from twin.load.loaded import LoadedRun
 
 Floats = NDArray[np.float64]
@@ -18,6 +19,7 @@ def load_figures(loaded: LoadedRun | None) -> dict[str, object]:
         f"largest_{letter}": float(np.abs(load.axes[:, k]).max(initial=0.0)) if load else 0.0
         for k, letter in enumerate(recording.axes)
     }
+    line = loaded.line
     return {
         "cutting_load": {
             "settled": loaded.settled,
@@ -29,6 +31,8 @@ def load_figures(loaded: LoadedRun | None) -> dict[str, object]:
             "stalled": loaded.stalled,
             "torque_limit": loaded.torque_limit,
             "mean_torque": loaded.mean_torque,
+            "torque_line_hz": None if line is None else line.hz,
+            "torque_line": None if line is None else line.amplitude,
             "k_c11": loaded.material.k_c11,
             "m_c": loaded.material.m_c,
             "tool_stiffness_n_per_um": loaded.stiffness.tool,
@@ -50,6 +54,7 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
     figures = load_figures(loaded).get("cutting_load")
     if loaded is None or not isinstance(figures, dict):
         return []
+    line = loaded.line
     frequency = "" if loaded.frequency_hz is None else f", at {loaded.frequency_hz:.4g} Hz"
     return [
         ("k_{c1.1}, m_{c}", f"{loaded.material.k_c11:g} N/mm², {loaded.material.m_c:g}"),
@@ -61,6 +66,7 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
             f"{loaded.mean_torque:.3g} N m, at most {figures[f'largest_{tool}']:.3g} of the drive's "
             f"{loaded.torque_limit:.3g}",
         ),
+        *([] if line is None else [("Largest line of the torque", _line(line))]),
         ("Give", f"up to {figures['largest_deflection_um']:.3g} µm: {loaded.stiffness.words()}"),
         (
             "Rounds",
@@ -68,6 +74,10 @@ def load_rows(loaded: LoadedRun | None, tool: str) -> list[tuple[str, str]]:
             f"the last round moved {figures['moved_um']:.2g} µm{frequency}",
         ),
     ]
+
+
+def _line(line: Line) -> str:
+    return f"{line.amplitude:.3g} N m at {line.hz:.4g} Hz, {line.per_turn:.3g} a turn of the tool"
 
 
 def load_words(loaded: LoadedRun) -> str:

@@ -11,6 +11,7 @@ from controller.tables.alarms import Alarm
 from twin.course import Course
 from twin.job.schema import Job
 from twin.load.change import dominant_hz
+from twin.load.lines import Line, largest_line
 from twin.load.material import Material
 from twin.load.rounds import TICKS, Rounds, Settled
 from twin.load.stiffness import Stiffness
@@ -68,6 +69,11 @@ class LoadedRun:
     def mean_power_w(self) -> float:
         """While metal is removed."""
         return float(self.load.power_w.mean()) if len(self.load.cell) else 0.0
+
+    @property
+    def line(self) -> Line | None:
+        """Largest in the spectrum of the tool's torque."""
+        return largest_line(self.load, self.tick_s)
 
     @property
     def mean_torque(self) -> float:
