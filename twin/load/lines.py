@@ -55,10 +55,7 @@ def largest_line(load: CuttingLoad, tick_s: float) -> Line | None:
 
 def _peak(before: float, largest: float, after: float) -> tuple[float, float]:
     """Where, from the largest of three neighbours on, a line stands in the spectrum of a Hann window, and how
-    high: by a parabola through their logarithms."""
-    if not min(before, largest, after) > 0.0:
-        return 0.0, float(largest)
-    low, top, high = (math.log(one) for one in (before, largest, after))
-    bend = low - 2.0 * top + high
-    off = 0.5 * (low - high) / bend if bend else 0.0
-    return off, math.exp(top - 0.25 * (low - high) * off)
+    high: the window's own is sinc(δ) / (1 − δ²) at δ from a line, which two neighbours give."""
+    share = max(before, after) / largest if largest else 0.0
+    off = max((2.0 * share - 1.0) / (1.0 + share), 0.0)
+    return math.copysign(off, after - before), float(largest * (1.0 - off * off) / np.sinc(off))
