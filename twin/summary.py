@@ -196,7 +196,7 @@ def chip_words(chips: Chips) -> str:
     volume, thick = chips.volume_mm3, chips.thickness_max_mm
     return (
         f"{len(volume)} chips, {chips.total_mm3:.1f} mm³ in all, the largest {volume.max():.3g} mm³; "
-        f"thickness up to {thick.max():.3f} mm (rings {chips.resolution_mm:.2g} mm apart)"
+        f"thickness up to {thick.max():.3f} mm (cells of {chips.resolution_mm:.2g} mm)"
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.grid import Grid
+from twin.cutting.local import ROUNDING, Tangents, joined, without_bites
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, join
 from twin.cutting.sweep import Sweep
 
@@ -15,7 +16,12 @@ Ints = NDArray[np.int64]
 
 COARSEST = 16
 """Cells along the edge of the blocks that the search begins with, and along z of a slab."""
+TOUCHED = 4
+"""of the blocks in which bites get their tangents"""
 FINEST = 2
+BEYOND = 1.5
+"""times their radius within which these tangents are proved: who leaves a block asks them still"""
+OCTANTS = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +33,8 @@ class Blocks:
     """(n,) ascending; see `_key`"""
     low: Ints
     """(n, 3) their low corners [cells]"""
-    lists: Candidates
+    tangents: Tangents
+    """of their bites, in the order of time"""
     z_range: tuple[float, float]
     """of the slab [mm]"""
 
@@ -36,10 +43,10 @@ class Blocks:
         """The finest blocks within coarsest ones (n, 3) of one slab."""
         k = int(low[0, 2])
         z_range = float(grid.z[k]), float(grid.z[min(k + COARSEST, len(grid.z) - 1)])
-        low, lists = _touched(sweep, grid, low)
+        low, tangents = _finest(sweep, grid, *_touched(sweep, grid, low))
         key = _key(grid, low)
         order = np.argsort(key)
-        return cls(grid, key[order], low[order], lists.of(order), z_range)
+        return cls(grid, key[order], low[order], tangents.of(order), z_range)
 
     def rows(self, at: Floats) -> Ints:
         """The block of each place (m, 3): radius [mm], angle [rad], z [mm]; −1 where nothing comes."""
@@ -53,14 +60,47 @@ class Blocks:
         row = np.minimum(np.searchsorted(self.key, key), max(len(self.key) - 1, 0))
         return np.where(self.key[row] == key, row, -1) if len(self.key) else np.full(len(at), -1)
 
-    def near(self, rows: Ints) -> tuple[Ints, Ints]:
-        """Items and bites, in the items' order, of the lists of two blocks (m, 2) of each; a bite may come
-        twice."""
-        rows = rows.copy()
-        rows[rows[:, 0] == rows[:, 1], 1] = -1
-        item, column = np.nonzero(rows >= 0)
-        pairs = self.lists.of(rows[item, column])
-        return item[pairs.owner()], pairs.bites
+    def coming(
+        self, points: Floats, rows: Ints, reach: Floats | float = 0.0, until: Ints | None = None
+    ) -> tuple[Ints, Ints]:
+        """Which of the points (m, 3) bites may be as near as `reach` (m,) to, and these bites, point by point
+        in the order of time.
+
+        Asked are the bites of the blocks `rows` (m,), none where that is −1, and only those before `until`
+        (m,).
+        """
+        item, pairs, (upper,) = self.uppers((points,), rows, until)
+        near = upper > -np.broadcast_to(reach, len(points))[item]
+        return item[near], self.tangents.lists.bites.take(pairs[near])
+
+    def uppers(
+        self, points: tuple[Floats, ...], rows: Ints, until: Ints | None = None
+    ) -> tuple[Ints, Ints, list[Floats]]:
+        """Upper bounds on the depths of some points in the bites of blocks `rows` (m,): of each of several
+        sets (m, 3) of points.
+
+        Returns the items (k,), ascending, the places (k,) of their bites in `tangents`, and the bounds (k,).
+        """
+        some = np.flatnonzero(rows >= 0)
+        block = rows[some]
+        t = self.tangents
+        pairs, owner = t.lists.pairs(block), np.repeat(np.arange(len(some)), np.diff(t.lists.start)[block])
+        if until is not None:
+            before = t.lists.bites.take(pairs) < until[some].take(owner)
+            pairs, owner = pairs[before], owner[before]
+        level, x, y, z = t.plane.take(pairs, axis=1)
+        level += t.over.take(pairs)
+        bounds: list[Floats] = []
+        for where in points:
+            way = where[some] - t.middle[block]
+            upper = level.copy()
+            for slope, off in zip((x, y, z), way.T, strict=True):
+                upper += slope * off.take(owner)
+            out = np.einsum("nx,nx->n", way, way) > (t.radius[block] * (1.0 + ROUNDING)) ** 2
+            if out.any():
+                upper[out.take(owner)] = np.inf
+            bounds.append(upper)
+        return some.take(owner), pairs, bounds
 
 
 def _key(grid: Grid, cell: Ints) -> Ints:
@@ -69,23 +109,70 @@ def _key(grid: Grid, cell: Ints) -> Ints:
     return (i * grid.sectors + j) * len(grid.z) + k
 
 
-def _touched(sweep: Sweep, grid: Grid, low: Ints) -> tuple[Ints, Candidates]:
-    """The finest blocks that some bite may touch, and those bites."""
+def _touched(sweep: Sweep, grid: Grid, low: Ints) -> tuple[Ints, Tangents]:
+    """The blocks of TOUCHED cells that some bite may touch, and those bites."""
     size = COARSEST
-    middle, radius = _balls(grid, low, size)
-    lists = sweep.near(middle, radius)
+    lists = sweep.near(*_balls(grid, low, size))
     while True:
         some = np.flatnonzero(np.diff(lists.start))
         low, lists = low[some], lists.of(some)
-        if size == FINEST:
-            return low, lists
+        if size == TOUCHED:
+            return low, _tangents(sweep, *_balls(grid, low, size), lists)
         size //= 2
-        steps = size * np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
-        parent = np.repeat(np.arange(len(low)), 8)
-        low = (low[:, None] + steps).reshape(-1, 3)
-        inside = (low[:, 0] < grid.cells[0]) & (low[:, 2] < grid.cells[2])
-        low = low[inside]
-        lists = _culled(sweep, *_balls(grid, low, size), lists.of(parent[inside]))
+        low, parent = _halves(grid, low, size)
+        lists = _culled(sweep, *_balls(grid, low, size), lists.of(parent))
+
+
+def _finest(sweep: Sweep, grid: Grid, low: Ints, tangents: Tangents) -> tuple[Ints, Tangents]:
+    """The finest blocks that bites may touch by their tangents in larger ones."""
+    size = TOUCHED
+    while size > FINEST:
+        size //= 2
+        low, parent = _halves(grid, low, size)
+        middle, radius = _balls(grid, low, size)
+        starts = np.concatenate([[0], np.cumsum(np.diff(tangents.lists.start)[parent])])
+
+        def work(
+            part: slice, above: Tangents = tangents, parent: Ints = parent, middle: Floats = middle,
+            radius: Floats = radius,
+        ) -> Tangents:  # fmt: skip
+            return _moved(sweep, above.of(parent[part]), middle[part], radius[part])
+
+        parts = in_parallel(work, batches(starts, LISTED))
+        tangents = joined([without_bites(np.zeros((0, 3))), *parts])
+        some = np.flatnonzero(np.diff(tangents.lists.start))
+        low, tangents = low[some], tangents.of(some)
+    return low, tangents
+
+
+def _moved(sweep: Sweep, above: Tangents, middle: Floats, radius: Floats) -> Tangents:
+    """The tangents of larger blocks `above` that come to balls in them before these are gone."""
+    owner = above.lists.owner()
+    way = middle - above.middle
+    plane = above.plane
+    plane[0] += np.einsum("xm,mx->m", plane[1:], way.take(owner, axis=0))
+    reach = np.sqrt(np.einsum("xm,xm->m", plane[1:], plane[1:])) * radius.take(owner)
+    keep = plane[0] + above.over + reach > 0
+    # the first that seems to take all of a ball is asked whether it does
+    whole = np.flatnonzero(plane[0] - above.over - reach > 0)
+    whole = whole[np.flatnonzero(np.diff(owner[whole], prepend=-1))]
+    who, bites = owner[whole], above.lists.bites
+    meeting = sweep.evaluate(middle[who], bites[whole])
+    change, _ = sweep.bound(meeting, bites[whole], radius[who])
+    sure = meeting.depth - change > 0
+    gone = np.full(len(middle), np.iinfo(np.int64).max)
+    gone[who[sure]] = bites[whole[sure]]
+    keep &= bites <= gone.take(owner)
+    left = above.radius - np.linalg.norm(way, axis=1)
+    return Tangents(above.lists.where(keep), middle, left, plane[:, keep], above.over[keep])
+
+
+def _halves(grid: Grid, low: Ints, size: int) -> tuple[Ints, Ints]:
+    """The eighths (m, 3) of blocks, of `size` cells, and the block that each is part of."""
+    parent = np.repeat(np.arange(len(low)), 8)
+    low = (low[:, None] + size * OCTANTS).reshape(-1, 3)
+    inside = (low[:, 0] < grid.cells[0]) & (low[:, 2] < grid.cells[2])
+    return low[inside], parent[inside]
 
 
 def _balls(grid: Grid, low: Ints, size: int) -> tuple[Floats, Floats]:
@@ -102,10 +189,23 @@ def _culled(sweep: Sweep, middle: Floats, radius: Floats, lists: Candidates) -> 
         owner = own.owner()
         meeting = sweep.evaluate(middle[owner + part.start], own.bites)
         change, _ = sweep.bound(meeting, own.bites, radius[owner + part.start])
-        order = sweep.order(own.bites)
         gone = np.full(own.count, np.iinfo(np.int64).max)
         whole = meeting.depth - change > 0
-        np.minimum.at(gone, owner[whole], order[whole])
-        return own.where((meeting.depth + change > 0) & (order <= gone[owner]))
+        np.minimum.at(gone, owner[whole], own.bites[whole])
+        return own.where((meeting.depth + change > 0) & (own.bites <= gone[owner]))
 
     return join(in_parallel(work, batches(lists.start, LISTED)))
+
+
+def _tangents(sweep: Sweep, middle: Floats, radius: Floats, lists: Candidates) -> Tangents:
+    """The bites' tangents in the middles of balls, proved BEYOND these."""
+
+    def work(part: slice) -> Tangents:
+        own = lists.of(np.arange(part.start, part.stop))
+        owner = own.owner() + part.start
+        meeting = sweep.evaluate(middle[owner], own.bites, gradient=True)
+        _, over = sweep.bound(meeting, own.bites, BEYOND * radius[owner])
+        plane = np.vstack([meeting.depth, meeting.gradient.T])
+        return Tangents(own, middle[part], BEYOND * radius[part], plane, over)
+
+    return joined([without_bites(np.zeros((0, 3))), *in_parallel(work, batches(lists.start, LISTED))])

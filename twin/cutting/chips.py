@@ -1,8 +1,8 @@
 """The chips: what each tooth takes away as it passes, in the order of time.
 
-The blank is cut into rings about the work axis. Along a ring each bite removes intervals of angle, from
-crossing to crossing of its depth. In the order of time an interval counts only where no earlier one has been:
-true unions, whatever the program does. What is left of a bite's intervals, over all rings, is its chip.
+The blank is divided into cells. Of each place the first bite that comes deeper owns it: true unions, whatever
+the program does. A cell counts by a line through its middle, on which each bite's share is found; what a bite
+owns, over all cells, is its chip.
 """
 
 import math
@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.blocks import Blocks
+from twin.cutting.cells import Cells, points
 from twin.cutting.fields import tool_field
 from twin.cutting.meeting import Meeting
 from twin.cutting.motion import CutterMotion
-from twin.cutting.removed import removed
-from twin.cutting.rings import Rings, intervals
+from twin.cutting.owners import owned
 from twin.cutting.sweep import Sweep
 from twin.cutting.thickness import Places, climbed
 from twin.errors import InputError
@@ -29,19 +29,23 @@ Ints = NDArray[np.int64]
 Progress = Callable[[str, float], None]
 
 PLACES = 8_000_000
-"""Places on rings that a run has where no resolution is asked for; it may have eight times as many."""
-FINE = 75.0
-"""Rings in the pitch of a hob's teeth, or in the width of another tool's edge"""
+"""Cells that a run has where no resolution is asked for; it may have eight times as many."""
+FINE = 50.0
+"""Cells across in the pitch of a hob's teeth, or in the width of another tool's edge"""
 AROUND = 1.5
-"""Steps between the places on the rings of a hobbed part: what lies between them is searched for"""
+"""Width of the cells of a hobbed part around, for one across"""
 LONG = 3.0
-"""Steps between its rings along the axis: a hob's chips are as long as it is wide"""
+"""and along the axis: a hob's chips are as long as it is wide"""
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chips:
-    """One row for each tooth that took something away as it passed, in the order of time."""
+    """One row for each tooth that took something away as it passed, in the order of time.
+
+    Twice the resolution changes volume and thickness by less than 2 % where a chip has more than a hundredth
+    of the mean volume (docs/kernel.md); the smallest have a few cells, or none.
+    """
 
     time_s: Floats
     """(n,) when it took the first of it"""
@@ -60,7 +64,7 @@ class Chips:
     width_mm: Floats
     """(n,) length of the edge that took something"""
     resolution_mm: float
-    """distance of the rings"""
+    """size of the cells across"""
 
     @property
     def total_mm3(self) -> float:
@@ -74,7 +78,7 @@ class Chips:
 
 @dataclass(frozen=True, slots=True)
 class _Shares:
-    """Pieces of intervals that were the first to be removed."""
+    """Pieces of cells, each with the bite that was the first to remove it."""
 
     bite: Ints
     """(n,) numbered through all tools"""
@@ -97,7 +101,7 @@ def chips(
     resolution_mm: float | None = None,
     progress: Progress = lambda _stage, _share: None,
 ) -> Chips:
-    """The chips of a cut; `resolution_mm` is the distance of the rings.
+    """The chips of a cut; `resolution_mm` is the size of the cells across.
 
     Raises InputError for a resolution that is none, or would need too much memory.
     """
@@ -106,13 +110,13 @@ def chips(
     hull = blank.radius / math.cos(math.pi / 6.0)
     sweep = Sweep(tuple(tool_field(c, m, hull, blank.z_range) for c, m in tools))
     around, along = _wide(tools)
-    rings = Rings.of(blank, step, around=step * around, along=step * along)
+    cells = Cells.of(blank, step, around=step * around, along=step * along)
     shares: list[_Shares] = []
-    slabs = list(rings.slabs()) if sweep.passes else []
+    slabs = list(cells.slabs()) if sweep.passes else []
     for number, low in enumerate(slabs):
         progress("chips", number / len(slabs))
-        blocks = Blocks.of(sweep, rings.grid, low)
-        shares.append(_shares(sweep, blank, rings, blocks, step))
+        blocks = Blocks.of(sweep, cells.grid, low)
+        shares.append(_shares(sweep, blank, cells, blocks))
     progress("chips", 1.0)
     return _summed(sweep, tools, shares, step)
 
@@ -128,31 +132,31 @@ def _step(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], resoluti
         raise InputError(f"a resolution of {resolution:g} mm", remedy="valid: above 0, for example 0.1")
     if resolution < usual / 2.0:
         raise InputError(
-            f"chips on rings {resolution:g} mm apart would need more memory than allowed",
+            f"chips of cells of {resolution:g} mm would need more memory than allowed",
             remedy=f"valid: {math.ceil(usual * 500.0) / 1e3:g} or more",
         )
     return resolution
 
 
 def _wide(tools: tuple[tuple[Cutter, CutterMotion], ...]) -> tuple[float, float]:
-    """Steps around and along the axis for one across the rings."""
+    """Width of cells around and along the axis for one across."""
     return (AROUND, LONG) if all(math.isfinite(cutter.profile.pitch) for cutter, _ in tools) else (1.0, 1.0)
 
 
-def _shares(sweep: Sweep, blank: Blank, rings: Rings, blocks: Blocks, step: float) -> _Shares:
-    """What each bite was the first to remove, and where on its edge: pieces short enough that their feet lie
-    close along it."""
-    part = removed(sweep, rings, intervals(sweep, rings, blocks), 2.0 * step)
-    angle = part.start[:, None] + part.width[:, None] * np.array([0.0, 0.5, 1.0])
-    met = [sweep.evaluate(rings.points(part.ring, at), part.bite) for at in angle.T]
+def _shares(sweep: Sweep, blank: Blank, cells: Cells, blocks: Blocks) -> _Shares:
+    """What each bite was the first to remove, and where on its edge."""
+    part = owned(sweep, cells, blocks)
+    if blank.section is not None:
+        part = part.outside(blank.section)
+    at = np.stack([part.at(share) for share in (0.0, 0.5, 1.0)], axis=1)
+    met = [sweep.evaluate(points(where), part.bite) for where in at.transpose(1, 0, 2)]
     height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
     best = height.argmax(axis=1)
-    rows = np.arange(len(best))
-    i, k = np.divmod(part.ring, len(rings.height))
-    at = np.stack([rings.radius[i], angle[rows, best], rings.height[k]], axis=1)
-    largest = climbed(sweep, blank, blocks, Places(part.bite, at, height[rows, best]), rings.spacing)
+    each = np.arange(len(best))
+    places = Places(part.bite, at[each, best], height[each, best])
+    largest = climbed(sweep, blank, blocks, places, cells.spacing)
     foot, slope = _foot(sweep, met[1], part.bite)
-    return _Shares(part.bite, part.volume(rings), height @ SIMPSON, largest, part.instant, foot, slope)
+    return _Shares(part.bite, part.volume, height @ SIMPSON, largest, met[1].instant, foot, slope)
 
 
 def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:

@@ -1,4 +1,4 @@
-"""Linear programs in three unknowns, many at once: how far up a slope some planes let one go."""
+"""Linear programs in a few unknowns, many at once: how far up a slope some planes let one go."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,21 +6,21 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-ROUNDS = 20
+ROUNDS = 24
 FLAT = 1e-9
 """share of a slope that counts as none"""
 
 
 def highest(rise: Floats, slope: Floats, room: Floats) -> Floats:
-    """Ways (n, 3) from the origin along which rise · way is the largest, where slope · way <= room.
+    """Ways (n, d) from the origin along which rise · way is the largest, where slope · way <= room.
 
     By gradient projection: straight up until planes are in the way, along these, and off one that holds back.
-    `rise` (n, 3); `slope` (n, k, 3); `room` (n, k), not negative, inf for no plane. Planes must enclose the
+    `rise` (n, d); `slope` (n, k, d); `room` (n, k), not negative, inf for no plane. Planes must enclose the
     origin; after ROUNDS the way may be shorter than the best.
     """
-    n = len(room)
-    way = np.zeros((n, 3))
-    held = np.full((n, 3), -1)
+    n, dimensions = rise.shape
+    way = np.zeros((n, dimensions))
+    held = np.full((n, dimensions), -1)
     left = np.arange(n)
     room = room.copy()
     for _ in range(ROUNDS):
@@ -42,7 +42,7 @@ def highest(rise: Floats, slope: Floats, room: Floats) -> Floats:
         item = left[go]
         speed = np.einsum("nkx,nx->nk", slope[item], along[go])
         near = speed > FLAT * np.linalg.norm(along[go], axis=1)[:, None]
-        for slot in range(3):
+        for slot in range(dimensions):
             some = np.flatnonzero(own[go, slot] >= 0)
             near[some, own[go[some], slot]] = False
         far = np.where(near, room[item] / np.where(near, speed, 1.0), np.inf)
@@ -61,9 +61,9 @@ def highest(rise: Floats, slope: Floats, room: Floats) -> Floats:
 
 
 def _along(goal: Floats, normal: Floats) -> Floats:
-    """(n, 3) what of `goal` lies in the planes with these normals (n, 3, 3)."""
+    """(n, d) what of `goal` lies in the planes with these normals (n, d, d)."""
     base: list[Floats] = []
-    for slot in range(3):
+    for slot in range(goal.shape[1]):
         q = normal[:, slot]
         length = np.linalg.norm(q, axis=1)
         for other in base:
@@ -78,7 +78,7 @@ def _along(goal: Floats, normal: Floats) -> Floats:
 
 
 def _pushes(goal: Floats, normal: Floats) -> Floats:
-    """(n, 3) shares of the normals (n, 3, 3) that make up `goal`; 0 for those that are none."""
+    """(n, d) shares of the normals (n, d, d) that make up `goal`; 0 for those that are none."""
     gram = np.einsum("nix,njx->nij", normal, normal)
-    gram += np.eye(3) * np.where(np.einsum("nii->ni", gram) > 0, 1e-12, 1.0)[:, :, None]
+    gram += np.eye(goal.shape[1]) * np.where(np.einsum("nii->ni", gram) > 0, 1e-12, 1.0)[:, :, None]
     return np.linalg.solve(gram, np.einsum("nix,nx->ni", normal, goal)[:, :, None])[:, :, 0]

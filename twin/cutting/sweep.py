@@ -256,15 +256,13 @@ class Sweep:
                 slope[who[higher]] = other.gradient[at[higher]]
         return Deepest(floor, slope, leading, instant)
 
-    def order(self, bite: Ints) -> Ints:
-        """Number (m,) of each bite's pass in the order of time: at any one place passes come so."""
-        order = np.zeros(len(bite), dtype=np.int64)
-        passed = 0
+    def pass_begin(self, bite: Ints) -> Ints:
+        """First bite of each bite's pass: at any one place those before it come earlier."""
+        begin = np.zeros_like(bite)
         for n, f in enumerate(self.fields):
             here = self._of(n, bite)
-            order[here] = passed + (bite[here] - self._first[n]) // f.bites
-            passed += f.passes.count
-        return order
+            begin[here] = bite[here] - (bite[here] - self._first[n]) % f.bites
+        return begin
 
     def tool(self, bite: Ints) -> Ints:
         """Number (m,) of the tool that each bite belongs to."""

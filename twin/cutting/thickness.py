@@ -1,8 +1,9 @@
 """The largest thickness of chips: the highest place above a bite's edge that is still metal when it comes.
 
-Pieces of rings say about where that is. From there it is climbed to. What earlier bites have left is what
+Pieces of cells say about where that is. From there it is climbed to. What earlier bites have left is what
 lies outside of convex bodies; a linear program in a box about the last place says where to go next
-(`climb.py`). The bites that it asks are those of the blocks that the rings were searched with: all that come.
+(`climb.py`). The height above an edge is that above the nearest of its lines and arcs, a concave function:
+the tangents of the last places that were tried bound it all.
 """
 
 from dataclasses import dataclass
@@ -13,26 +14,29 @@ from numpy.typing import NDArray
 from twin.cutting.blank import Blank
 from twin.cutting.blocks import Blocks
 from twin.cutting.climb import highest
-from twin.cutting.grid import cartesian
+from twin.cutting.metal import Metal
 from twin.cutting.pairs import in_parallel
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 STARTS = 3
 """places of each bite that are climbed from"""
+WORTH = 0.5
+"""share of the highest that a place must have for that"""
 APART = 2.0
 """boxes between them at least"""
-STEPS = 16
+STEPS = 20
 """boxes after each other, at most"""
 SHRINK, GROW = 0.4, 2.0
-GAIN = 1e-3
+GAIN = 2e-3
 """share of the height that a box has to promise"""
 STIFF = 30.0
 """by how much what is gone already counts against the height"""
-ASIDE = 1e-4
-"""[mm] between places that the slope of the blank's outline is told by"""
+LAST = 3
+"""places tried whose tangents bound the height"""
 TOGETHER = 4096
 """places that are climbed from at once"""
 
@@ -48,21 +52,32 @@ class Places:
     height: Floats
     """(n,) above its edge [mm]"""
 
-    def of(self, rows: Ints | slice | NDArray[np.bool_]) -> "Places":
+    def of(self, rows: Ints | Bools) -> "Places":
         """Some of them."""
         return Places(self.bite[rows], self.at[rows], self.height[rows])
 
 
 @dataclass(frozen=True, slots=True)
-class _Planes:
-    """What bounds the metal about some places, as tangent planes, in steps across, around and along [mm]."""
+class _Tangents:
+    """Of the heights above edges, at the last places tried."""
 
-    rise: Floats
-    """(n, 3) slope of the height above the edge"""
-    level: Floats
-    """(n, k) how far the places are beyond what is gone, or the blank; −inf for none"""
+    at: Floats
+    """(n, LAST, 3)"""
+    height: Floats
+    """(n, LAST)"""
     slope: Floats
-    """(n, k, 3) of that"""
+    """(n, LAST, 3) in steps"""
+
+    def put(self, rows: Ints, number: int, at: Floats, found: tuple[Floats, Floats]) -> None:
+        """Replace those of some places."""
+        self.at[rows, number] = at
+        self.height[rows, number], self.slope[rows, number] = found
+
+    def above(self, rows: Ints, at: Floats) -> Floats:
+        """(n, LAST) heights that they allow at places (n, 3)."""
+        off = at[:, None] - self.at[rows]
+        off[:, :, 1] = at[:, None, 0] * _turned(off[:, :, 1])
+        return self.height[rows] + (self.slope[rows] * off).sum(axis=2)
 
 
 def climbed(sweep: Sweep, blank: Blank, blocks: Blocks, found: Places, box: Floats) -> Floats:
@@ -71,11 +86,11 @@ def climbed(sweep: Sweep, blank: Blank, blocks: Blocks, found: Places, box: Floa
     `box` (3,) is how far off the next one found may be: across, around and along the axis [mm].
     """
     start = _starts(found, APART * box)
-    climb = _Climb(sweep, blank, blocks, box)
+    metal = Metal(sweep, blank, blocks)
     slices = (start[low : low + TOGETHER] for low in range(0, len(start), TOGETHER))
     height = np.zeros(len(found.height))
     height[start] = np.concatenate(
-        [np.zeros(0), *in_parallel(lambda rows: climb.up(found.of(rows)).height, slices)]
+        [np.zeros(0), *in_parallel(lambda rows: _up(metal, found.of(rows), box), slices)]
     )
     return np.maximum(height, 0.0)
 
@@ -91,7 +106,8 @@ def _starts(found: Places, apart: Floats) -> Ints:
         lead = np.repeat(order[first], np.diff(np.append(first, len(bite))))
         off = found.at[order] - found.at[lead]
         off[:, 1] = found.at[order, 0] * _turned(off[:, 1])
-        order = order[(np.abs(off) > apart).any(axis=1)]
+        high = found.height[order] > WORTH * found.height[lead]
+        order = order[high & (np.abs(off) > apart).any(axis=1)]
     return np.concatenate(kept)
 
 
@@ -100,115 +116,61 @@ def _turned(angle: Floats) -> Floats:
     return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
-class _Climb:
-    """What is climbed over: a blank, less what bites remove."""
-
-    def __init__(self, sweep: Sweep, blank: Blank, blocks: Blocks, box: Floats) -> None:
-        self._sweep, self._blank, self._blocks, self._box = sweep, blank, blocks, box
-
-    def up(self, start: Places) -> Places:
-        """The highest places within a few boxes."""
-        at = start.at.copy()
-        # blocks that are asked: the place's own, and that of the last one tried
-        where = np.repeat(self._blocks.rows(at)[:, None], 2, axis=1)
-        height = self._height(start, where)
-        size = np.ones(len(height))
-        rows = np.arange(len(height))
-        for _ in range(STEPS):
-            here = Places(start.bite[rows], at[rows], height[rows])
-            way, gain = self._way(here, where[rows], size[rows])
-            worth = gain > GAIN * np.abs(here.height)
-            rows, here, way, gain = rows[worth], here.of(worth), way[worth], gain[worth]
-            if not len(rows):
-                break
-            new = Places(here.bite, self._moved(here.at, way), here.height)
-            where[rows, 1] = self._blocks.rows(new.at)
-            value = self._height(new, where[rows])
-            better = value > here.height
-            size[rows] *= np.where(value > here.height + 0.5 * gain, GROW, np.where(better, 1.0, SHRINK))
-            size[rows] = np.minimum(size[rows], 1.0)
-            up = rows[better]
-            at[up], height[up] = new.at[better], value[better]
-        return Places(start.bite, at, height)
-
-    def _way(self, here: Places, where: Ints, size: Floats) -> tuple[Floats, Floats]:
-        """Steps (n, 3) within boxes, and what they promise (n,) [mm]."""
-        planes = self._planes(here, where)
-        # first out of what is gone, by the plane that is the farthest off
-        worst = planes.level.argmax(axis=1)
-        out = planes.slope[np.arange(len(worst)), worst]
-        deep = np.maximum(planes.level[np.arange(len(worst)), worst], 0.0)
-        back = -out * (deep / np.maximum((out * out).sum(axis=1), 1e-12))[:, None]
-        side = size[:, None] * self._box
-        low, high = self._ends()
-        room = np.concatenate([np.minimum(high - here.at, side), np.minimum(here.at - low, side)], axis=1)
-        room[:, [1, 4]] = side[:, 1, None]
-        back = np.clip(back, -room[:, 3:], room[:, :3])
-        cube = np.broadcast_to(np.concatenate([np.eye(3), -np.eye(3)]), (len(side), 6, 3))
-        slope = np.concatenate([planes.slope, cube], axis=1)
-        room = np.concatenate([-planes.level, room], axis=1) - np.einsum("nkx,nx->nk", slope, back)
-        way = back + highest(planes.rise, slope, np.maximum(room, 0.0))
-        return way, (planes.rise * way).sum(axis=1) + STIFF * deep
-
-    def _ends(self) -> tuple[Floats, Floats]:
-        """Lowest and highest radius, angle and z of the slab."""
-        low, high = self._blocks.z_range
-        return (
-            np.array([self._blank.bore_mm / 2.0, -np.inf, low]),
-            np.array([self._blank.radius, np.inf, high]),
-        )
-
-    def _moved(self, at: Floats, way: Floats) -> Floats:
-        """Places (n, 3) that far off, pulled back onto the blank's turned outline."""
-        new = at + way
-        new[:, 1] = at[:, 1] + way[:, 1] / np.maximum(at[:, 0], 1e-9)
-        new = np.clip(new, *self._ends())
-        new[:, 0] = np.minimum(new[:, 0], self._blank.outer_radius(new[:, 2]))
-        return new
-
-    def _height(self, places: Places, where: Ints) -> Floats:
-        """(n,) above the edge, much less where metal is gone [mm]."""
-        points = cartesian(*places.at.T)
-        height = self._sweep.evaluate(points, places.bite).depth
-        item, bite = self._earlier(places, where)
-        gone = np.zeros(len(height))
-        np.maximum.at(gone, item, self._sweep.evaluate(points[item], bite).depth)
-        if self._blank.section is not None:
-            gone = np.maximum(gone, self._blank.section.beyond(points)[0])
-        return height - STIFF * gone
-
-    def _planes(self, places: Places, where: Ints) -> _Planes:
-        radius, angle, z = places.at.T
-        points = cartesian(radius, angle, z)
-        n = len(points)
-        item, bite = self._earlier(places, where)
-        met = self._sweep.evaluate(points[item], bite, gradient=True)
-        slope = _polar(met.gradient, angle[item])
-        # no plane out of reach within the largest box
-        near = np.flatnonzero(met.depth + np.abs(slope) @ self._box > 0)
-        item, first = item[near], np.searchsorted(item[near], np.arange(n + 1))
-        number = np.arange(len(item)) - first[item]
-        k = int(np.diff(first).max(initial=0))
-        levels, slopes = np.full((n, k + 2), -np.inf), np.zeros((n, k + 2, 3))
-        levels[item, number], slopes[item, number] = met.depth[near], slope[near]
-        outer = self._blank.outer_radius
-        levels[:, k], slopes[:, k, 0] = radius - outer(z), 1.0
-        slopes[:, k, 2] = (outer(z - ASIDE) - outer(z + ASIDE)) / (2.0 * ASIDE)
-        if self._blank.section is not None:
-            levels[:, k + 1], beyond = self._blank.section.beyond(points)
-            slopes[:, k + 1] = _polar(beyond, angle)
-        rise = self._sweep.evaluate(points, places.bite, gradient=True).gradient
-        return _Planes(_polar(rise, angle), levels, slopes)
-
-    def _earlier(self, places: Places, where: Ints) -> tuple[Ints, Ints]:
-        """Items and bites of earlier passes in the blocks `where` (n, k)."""
-        item, bite = self._blocks.near(where)
-        before = self._sweep.order(bite) < self._sweep.order(places.bite)[item]
-        return item[before], bite[before]
+def _up(metal: Metal, start: Places, box: Floats) -> Floats:
+    """The heights (n,) of the highest places within a few boxes; less where metal is gone."""
+    at = start.at.copy()
+    # blocks that are asked: the place's own, and that of the last one tried
+    where = np.repeat(metal.rows(at)[:, None], 2, axis=1)
+    found = metal.height(start.bite, at)
+    best = found[0] - STIFF * metal.gone(start.bite, at, where)
+    tangents = _Tangents(*(np.repeat(v[:, None], LAST, axis=1) for v in (at, *found)))
+    size, rows = np.ones(len(best)), np.arange(len(best))
+    for number in range(STEPS):
+        here = Places(start.bite[rows], at[rows], best[rows])
+        over = tangents.above(rows, here.at), tangents.slope[rows]
+        way, gain = _way(metal, here, where[rows], over, size[rows, None] * box)
+        worth = gain > GAIN * np.abs(here.height)
+        rows, here, way, gain = rows[worth], here.of(worth), way[worth], gain[worth]
+        if not len(rows):
+            break
+        new = metal.moved(here.at, way)
+        where[rows, 1] = metal.rows(new)
+        found = metal.height(here.bite, new)
+        tangents.put(rows, number % LAST, new, found)
+        value = found[0] - STIFF * metal.gone(here.bite, new, where[rows])
+        better = value > here.height
+        size[rows] *= np.where(value > here.height + 0.5 * gain, GROW, np.where(better, 1.0, SHRINK))
+        size[rows] = np.minimum(size[rows], 1.0)
+        at[rows[better]], best[rows[better]] = new[better], value[better]
+    return best
 
 
-def _polar(slope: Floats, angle: Floats) -> Floats:
-    """Slopes (m, 3) by steps across, around and along the axis."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    x, y, z = slope.T
-    return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=1)
+def _way(
+    metal: Metal, here: Places, where: Ints, over: tuple[Floats, Floats], box: Floats
+) -> tuple[Floats, Floats]:
+    """Steps (n, 3) within boxes (n, 3), and what they promise (n,) [mm].
+
+    The height is under the planes `over` it: their heights (n, LAST) at the places, and slopes (n, LAST, 3).
+    """
+    above, rise = over
+    n, each = len(box), np.arange(len(box))
+    level, slope = metal.planes(here.bite, here.at, where, box)
+    room = metal.room(here.at, box)
+    # first out of what is gone, by the plane that is the farthest off
+    worst = level.argmax(axis=1)
+    out, deep = slope[each, worst], np.maximum(level[each, worst], 0.0)
+    back = -out * (deep / np.maximum((out * out).sum(axis=1), 1e-12))[:, None]
+    back = np.clip(back, -room[:, 3:], room[:, :3])
+    # the fourth unknown is the height
+    cube = np.broadcast_to(np.concatenate([np.eye(3), -np.eye(3)]), (n, 6, 3))
+    level = np.concatenate([-level, room], axis=1)
+    slope = np.concatenate([slope, cube], axis=1)
+    level = np.maximum(level - (slope * back[:, None]).sum(axis=2), 0.0)
+    under = above + (rise * back[:, None]).sum(axis=2)
+    begin = under.min(axis=1)
+    slope = np.concatenate([slope, -rise], axis=1)
+    slope = np.concatenate([slope, np.zeros((n, slope.shape[1], 1))], axis=2)
+    slope[:, -LAST:, 3] = 1.0
+    level = np.concatenate([level, under - begin[:, None]], axis=1)
+    way = highest(np.broadcast_to([0.0, 0.0, 0.0, 1.0], (n, 4)), slope, level)
+    return back + way[:, :3], begin + way[:, 3] - here.height

@@ -10,8 +10,10 @@ from twin.cutters.polygon_head import PolygonHead
 from twin.cutting.blank import Blank
 from twin.cutting.chips import chips
 from twin.cutting.cut import cut
+from twin.cutting.fields import tool_field
 from twin.cutting.motion import CutterMotion
 from twin.cutting.section import Section
+from twin.cutting.sweep import Sweep
 from twin.errors import InputError
 from twin.grinding.precut import PrecutGear
 from twin.grinding.wheel import GapWheel
@@ -123,6 +125,39 @@ def test_twice_the_resolution_changes_no_hobbed_chip_by_two_percent(synthetic):
     np.testing.assert_allclose(coarse.thickness_mean_mm[same], fine.thickness_mean_mm[rows], rtol=0.02)
     np.testing.assert_allclose(coarse.thickness_max_mm[same], fine.thickness_max_mm[rows], rtol=0.02)
     assert coarse.total_mm3 == pytest.approx(fine.total_mm3, rel=1e-3)
+
+
+def test_chips_are_what_random_points_say(synthetic):
+    """Of each point the first of all bites that is deeper owns it: volumes by their number, none thicker."""
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+    blank = Blank(diameter_mm=24.0, length_mm=0.6, bore_mm=15.0)
+    tool = synthetic.hobbing(hob, teeth=10, tip_x=7.5, z=(1.0, -1.5), feed=2.0, step_deg=6.0)
+    found = chips(blank, (tool,))
+    cutter, motion = tool
+    sweep = Sweep((tool_field(cutter, motion, 14.0, blank.z_range),))
+    rng = np.random.default_rng(0)
+    n = 6000
+    r, angle = np.sqrt(rng.uniform(7.5**2, 12.0**2, n)), rng.uniform(0.0, 2.0 * math.pi, n)
+    points = np.column_stack([r * np.cos(angle), r * np.sin(angle), rng.uniform(-0.6, 0.0, n)])
+    owner, height = np.full(n, -1), np.zeros(n)
+    for bite in range(sweep.count):
+        left = np.flatnonzero(owner < 0)
+        depth = sweep.evaluate(points[left], np.full(len(left), bite)).depth
+        owner[left[depth > 0]], height[left[depth > 0]] = bite, depth[depth > 0]
+    field = sweep.fields[0]
+    each = math.pi * (12.0**2 - 7.5**2) * 0.6 / n
+    counted, largest = {}, {}
+    for bite, depth in zip(owner[owner >= 0], height[owner >= 0], strict=True):
+        key = bite // field.bites, field.tooth[bite % field.bites]
+        counted[key] = counted.get(key, 0) + 1
+        largest[key] = max(largest.get(key, 0.0), depth)
+    rows = {key: row for row, key in enumerate(zip(found.turn, found.tooth, strict=True))}
+    assert len(counted) > 40
+    for key, number in counted.items():
+        volume = found.volume_mm3[rows[key]]
+        assert abs(number * each - volume) < 4.5 * math.sqrt(volume * each) + each
+        assert largest[key] < 1.005 * found.thickness_max_mm[rows[key]]
+    assert (owner >= 0).sum() * each == pytest.approx(found.total_mm3, rel=0.03)
 
 
 def test_a_second_pass_over_the_same_way_takes_nothing(synthetic):
