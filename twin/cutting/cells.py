@@ -43,7 +43,7 @@ class Cells:
         inside = np.clip(outer - r[:-1, None], 0.0, np.diff(r)[:, None])
         weight = 0.5 * (r[1:] + r[:-1])[:, None] * inside * np.diff(z)
         least = np.minimum(outer, np.minimum(*(blank.outer_radius(side) for side in (z[1:], z[:-1]))))
-        whole = (r[1:, None] <= least) & (blank.section is None)
+        whole = r[1:, None] <= least
         return cls(grid=Grid(r=r, sectors=sectors, z=z), section=blank.section, weight=weight, whole=whole)
 
     @property
@@ -91,8 +91,20 @@ class Pieces:
         """(n, 3) at a share of the way: radius, angle, z."""
         return self.start + share * (self.end - self.start)
 
-    def outside(self, section: Section) -> "Pieces":
-        """What of pieces along the angle lies in a section, not in its gaps."""
+    def within(self, section: Section) -> "Pieces":
+        """What of pieces along r or the angle lies in a section, not in its gaps."""
+        outward = self.start[:, 0] < self.end[:, 0]
+        part = self.of(outward)
+        low, high = part.start[:, 0], np.minimum(part.end[:, 0], section.reach(part.start))
+        # rings grow with their radius
+        share = (high**2 - low**2) / (part.end[:, 0] ** 2 - low**2)
+        end = part.end.copy()
+        end[:, 0] = high
+        part = Pieces(part.start, end, part.bite, part.volume * share)
+        return joined(part.of(share > 0), self.of(~outward)._around(section))
+
+    def _around(self, section: Section) -> "Pieces":
+        """What of pieces along the angle lies outside of the gaps."""
         radii, which = np.unique(self.start[:, 0], return_inverse=True)
         found = [section.gaps(radius) for radius in radii.tolist()]
         gaps = np.full((len(radii), max(map(len, found), default=0), 2), np.nan)
@@ -108,15 +120,15 @@ class Pieces:
                 before, behind = np.minimum(high, gap[:, 0]), np.maximum(low, gap[:, 1])
                 left = joined(
                     left.of(~cut),
-                    left.between(low, before).of(cut),
-                    left.between(behind, high).of(cut),
+                    left._between(low, before).of(cut),
+                    left._between(behind, high).of(cut),
                 )
                 which = np.concatenate([which[~cut], which[cut], which[cut]])
                 some = left.volume > 0
                 left, which = left.of(some), which[some]
         return left
 
-    def between(self, low: Floats, high: Floats) -> "Pieces":
+    def _between(self, low: Floats, high: Floats) -> "Pieces":
         """Pieces along the angle cut to between `low` and `high` (n,) [rad]."""
         start, end = self.start.copy(), self.end.copy()
         start[:, 1], end[:, 1] = low, high

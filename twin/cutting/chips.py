@@ -147,7 +147,7 @@ def _shares(sweep: Sweep, blank: Blank, cells: Cells, blocks: Blocks) -> _Shares
     """What each bite was the first to remove, and where on its edge."""
     part = owned(sweep, cells, blocks)
     if blank.section is not None:
-        part = part.outside(blank.section)
+        part = part.within(blank.section)
     at = np.stack([part.at(share) for share in (0.0, 0.5, 1.0)], axis=1)
     met = [sweep.evaluate(points(where), part.bite) for where in at.transpose(1, 0, 2)]
     height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)

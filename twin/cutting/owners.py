@@ -4,6 +4,8 @@ Each cell stands for what a line through its middle passes. Where its faces have
 goes the way that the owner's surface is crossed the steepest, in cells: along r, the angle, or z.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,8 @@ from twin.cutting.blocks import FINEST, Blocks
 from twin.cutting.cells import Cells, Pieces, joined, points
 from twin.cutting.changes import Lines, met
 from twin.cutting.first import NOBODY, first_owners
+from twin.cutting.metal import polar
+from twin.cutting.section import Section
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
@@ -27,7 +31,10 @@ def owned(sweep: Sweep, cells: Cells, blocks: Blocks) -> Pieces:
     same = (faces == faces[:, :1]).all(axis=1)
     axis = np.full(len(cell), AROUND)
     mixed = np.flatnonzero(~same & cells.whole[cell[:, 0], cell[:, 2]])
-    axis[mixed] = _steepest(sweep, low[mixed], high[mixed], faces[mixed])
+    axis[mixed] = _steepest(sweep, cells, 0.5 * (low + high)[mixed], (high - low)[mixed], faces[mixed])
+    if cells.section is not None:
+        alone = np.flatnonzero(same & cells.whole[cell[:, 0], cell[:, 2]])
+        axis[alone] = _across(cells.section, 0.5 * (low + high)[alone])
     # the line through the middle, between the faces of its axis
     each = np.arange(len(cell))
     start, end = 0.5 * (low + high), 0.5 * (low + high)
@@ -102,13 +109,19 @@ def _faces(sweep: Sweep, cells: Cells, blocks: Blocks, cell: Ints, rows: Ints) -
     return faces
 
 
-def _steepest(sweep: Sweep, low: Floats, high: Floats, faces: Ints) -> Ints:
-    """(n,) the axis along which the first owner's surface crosses the most of a cell."""
+def _across(section: Section, middle: Floats) -> Ints:
+    """(n,) r or the angle, whichever crosses the outline more, in cells of the same owner."""
+    _, slope = section.beyond(points(middle))
+    return np.where(np.abs(polar(slope, middle[:, 1])[:, 0]) > math.sqrt(0.5), 0, AROUND)
+
+
+def _steepest(sweep: Sweep, cells: Cells, middle: Floats, size: Floats, faces: Ints) -> Ints:
+    """(n,) the axis along which the first owner's surface crosses the most of cells (n, 3)."""
     none = np.iinfo(np.int64).max
     first = np.where(faces == NOBODY, none, faces).min(axis=1)
-    middle = 0.5 * (low + high)
-    slope = sweep.evaluate(points(middle), first, gradient=True).gradient
-    cos, sin = np.cos(middle[:, 1]), np.sin(middle[:, 1])
-    x, y, z = slope.T
-    polar = np.stack([cos * x + sin * y, (cos * y - sin * x) * middle[:, 0], z], axis=1)
-    return np.abs(polar * (high - low)).argmax(axis=1)
+    slope = polar(sweep.evaluate(points(middle), first, gradient=True).gradient, middle[:, 1])
+    size = size * np.stack([np.ones(len(size)), middle[:, 0], np.ones(len(size))], axis=1)
+    if cells.section is not None:
+        # it bounds the angle and r alone
+        size[:, 2] = 0.0
+    return np.abs(slope * size).argmax(axis=1)

@@ -55,6 +55,13 @@ class Section:
         rise = self.twist * (across * points[:, 1] - along * points[:, 0])
         return (out * off).sum(axis=1), np.stack([across, along, rise], axis=1)
 
+    def reach(self, at: Floats) -> Floats:
+        """Radius (n,) of the outline in the directions of places (n, 3): radius, angle [rad], z."""
+        ray = np.stack([np.cos(at[:, 1]), np.sin(at[:, 1]), at[:, 2]], axis=1)
+        # along a ray from the axis the distance from a side's line grows evenly
+        beyond, slope = self.beyond(ray)
+        return 1.0 - beyond / np.einsum("nx,nx->n", slope[:, :2], ray[:, :2])
+
     def gaps(self, radius: float) -> Floats:
         """(m, 2) stretches of a circle at height 0 that lie outside, from and to [rad]; 0 <= from < 2π."""
         start = self.outline
