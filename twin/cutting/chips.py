@@ -93,6 +93,26 @@ class _Shares:
     slope: Floats
     """(n,) way along the edge for each square of a lattice over (s, rho) that it crosses, in its sides"""
 
+    def together(self, side: float) -> "_Shares":
+        """Those of the same bite whose feet lie in the same square of that side as one."""
+        square = np.floor(self.foot / side)
+        order = np.lexsort((square[:, 1], square[:, 0], self.bite))
+        row = np.column_stack([self.bite, square])[order]
+        first = np.flatnonzero(np.append(True, (row[1:] != row[:-1]).any(axis=1))[: len(row)])
+        if not len(first):
+            return self
+        volume = np.add.reduceat(self.volume[order], first)
+        one = order[first]
+        return _Shares(
+            self.bite[one],
+            volume,
+            np.add.reduceat((self.volume * self.height)[order], first) / volume,
+            np.maximum.reduceat(self.largest[order], first),
+            np.minimum.reduceat(self.instant[order], first),
+            self.foot[one],
+            self.slope[one],
+        )
+
 
 def chips(
     blank: Blank,
@@ -116,7 +136,7 @@ def chips(
     for number, low in enumerate(slabs):
         progress("chips", number / len(slabs))
         blocks = Blocks.of(sweep, cells.grid, low)
-        shares.append(_shares(sweep, blank, cells, blocks))
+        shares.append(_shares(sweep, blank, cells, blocks).together(2.0 * step))
     progress("chips", 1.0)
     return _summed(sweep, tools, shares, step)
 
