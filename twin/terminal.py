@@ -19,6 +19,8 @@ def lines(outcome: Outcome) -> list[str]:
         said.append(f"  {chip_words(outcome.chips)}")
     if outcome.loaded is not None:
         said.append(f"  cutting forces: {load_words(outcome.loaded)}")
+        if outcome.loaded.stiffness.free is not None:
+            said.append(f"note: {outcome.loaded.stiffness.words()}")
     return said + part_lines(outcome.inspection, messages(outcome)) + expected_lines(outcome)
 
 

@@ -91,5 +91,5 @@ def load_words(loaded: LoadedRun) -> str:
         f"{figures['removed_mm3']:.1f} mm³ for {figures['energy_j'] / 1e3:.3g} kJ; "
         f"power while cutting {figures['mean_power_w']:.0f} W, at most "
         f"{figures['largest_power_w']:.0f} W; give of up to {figures['largest_deflection_um']:.3g} µm "
-        f"(rays {loaded.resolution_mm:.2g} mm apart); {loaded.stiffness.words()}"
+        f"(rays {loaded.resolution_mm:.2g} mm apart)"
     )

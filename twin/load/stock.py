@@ -22,6 +22,8 @@ RAYS_PER_PITCH = 18.0
 """or on the width of an edge, where the job names no resolution"""
 INCLINED_PER_PITCH = 14.0
 """the same of inclined rays, which the edges meet one by one"""
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+"""by which rows of rays stand aside of one another: no few of them repeat"""
 RAYS = 60_000
 """that a count has at most where the job names no resolution; it may have ten times as many"""
 
@@ -73,12 +75,14 @@ class Stock:
         step = _step(blank, highest - lowest, cutters, per_pitch, resolution_mm)
         around = math.ceil(2.0 * math.pi * blank.radius / step)
         along = math.ceil((highest - lowest) / step)
-        angle = 2.0 * math.pi * (np.arange(around) + 0.5) / around
         z = lowest + (highest - lowest) * (np.arange(along) + 0.5) / along
         z, inner, end = _stretches(blank.outline(), z, slope)
+        # each row a little further about the axis: else all gaps of a gear may be seen at the same few places
+        aside = GOLDEN * np.arange(len(z)) % 1.0
+        angle = 2.0 * math.pi * (np.arange(around)[:, None] + aside).reshape(-1) / around
         return cls(
-            cos=np.repeat(np.cos(angle), len(z)),
-            sin=np.repeat(np.sin(angle), len(z)),
+            cos=np.cos(angle),
+            sin=np.sin(angle),
             z=np.tile(z, around),
             slope=slope,
             inner=np.tile(inner, around),

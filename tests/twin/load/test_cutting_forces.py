@@ -188,7 +188,7 @@ def test_rounds_settle_and_the_mounts_give_way_by_force_over_stiffness(tmp_path)
     assert figures["energy_j"] == pytest.approx(loaded.load.power_w.sum() * 1e-3)
 
 
-SOFT = "cutting_load = true\nload_resolution_mm = 0.5\nk_c11 = 500.0\ntool_stiffness_n_per_um = {}"
+SOFT = "cutting_load = true\nload_resolution_mm = 0.4\nk_c11 = 500.0\ntool_stiffness_n_per_um = {}"
 
 
 def test_a_mount_softer_than_the_chip_gives_way_and_cuts_less_by_the_pass(tmp_path):

@@ -9,6 +9,7 @@ from polygon_job import metal_of, removal_of
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.cutting.blank import Blank
+from twin.cutting.cut import cut
 from twin.cutting.motion import CutterMotion
 from twin.load.material import MATERIALS
 from twin.load.stock import Stock
@@ -143,3 +144,14 @@ def test_radial_rays_would_jump_by_a_row(passes, synthetic):
     metal = metal_of(BAR, tool, 0.2)
     volume = np.bincount(metal.index, metal.volume_mm3)
     assert volume[volume > 0][3:-3].std() > 10.0 * passes[1][0.2][0].std()
+
+
+@pytest.mark.parametrize("slope", [0.0, 1.0])
+def test_metal_of_a_hob_is_what_the_part_has_lost_whatever_the_rays(synthetic, slope):
+    """Twelve gaps alike, and rays that come round twelve times alike, would err twelve times alike."""
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+    tool = synthetic.hobbing(hob, teeth=12, tip_x=9.5, z=(13.0, -16.0), feed=2.0, step_deg=6.0)
+    blank = Blank(diameter_mm=28.0, length_mm=3.0)
+    part = cut(blank, (tool,), cell_mm=0.3).remains
+    metal = removal_of(Stock.of(blank, [tool[0]], 0.5, slope=slope), blank, tool)
+    assert metal.volume_mm3.sum() == pytest.approx(part.blank_volume_mm3 - part.volume_mm3, rel=4e-3)
