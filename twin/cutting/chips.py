@@ -7,7 +7,7 @@ owns, over all cells, is its chip.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,32 +86,37 @@ class _Shares:
     height: Floats
     """(n,) mean, above the edge [mm]"""
     largest: Floats
-    """(n,) that is near it; 0 where it was not looked for [mm]"""
+    """(n,) of it, then the highest that is near; 0 where that was not looked for [mm]"""
     instant: Floats
     foot: Floats
     """(n, 2) where on the edge (s, rho) the middle lies [mm]"""
     slope: Floats
     """(n,) way along the edge for each square of a lattice over (s, rho) that it crosses, in its sides"""
 
-    def together(self, side: float) -> "_Shares":
-        """Those of the same bite whose feet lie in the same square of that side as one."""
+    def together(self, side: float) -> tuple["_Shares", Ints]:
+        """Those of the same bite whose feet lie in the same square of that side as one; and which of each is
+        the highest."""
         square = np.floor(self.foot / side)
-        order = np.lexsort((square[:, 1], square[:, 0], self.bite))
+        order = np.lexsort((-self.largest, square[:, 1], square[:, 0], self.bite))
         row = np.column_stack([self.bite, square])[order]
         first = np.flatnonzero(np.append(True, (row[1:] != row[:-1]).any(axis=1))[: len(row)])
         if not len(first):
-            return self
+            return self, first
         volume = np.add.reduceat(self.volume[order], first)
-        one = order[first]
-        return _Shares(
-            self.bite[one],
+        top = order[first]
+        one = _Shares(
+            self.bite[top],
             volume,
             np.add.reduceat((self.volume * self.height)[order], first) / volume,
-            np.maximum.reduceat(self.largest[order], first),
+            self.largest[top],
             np.minimum.reduceat(self.instant[order], first),
-            self.foot[one],
-            self.slope[one],
+            self.foot[top],
+            self.slope[top],
         )
+        return one, top
+
+
+_NONE = _Shares(np.zeros(0, dtype=np.int64), *np.zeros((4, 0)), foot=np.zeros((0, 2)), slope=np.zeros(0))
 
 
 def chips(
@@ -136,7 +141,7 @@ def chips(
     for number, low in enumerate(slabs):
         progress("chips", number / len(slabs))
         blocks = Blocks.of(sweep, cells.grid, low)
-        shares.append(_shares(sweep, blank, cells, blocks).together(2.0 * step))
+        shares.append(_shares(sweep, blank, cells, blocks, 2.0 * step))
     progress("chips", 1.0)
     return _summed(sweep, tools, shares, step)
 
@@ -163,20 +168,27 @@ def _wide(tools: tuple[tuple[Cutter, CutterMotion], ...]) -> tuple[float, float]
     return (AROUND, LONG) if all(math.isfinite(cutter.profile.pitch) for cutter, _ in tools) else (1.0, 1.0)
 
 
-def _shares(sweep: Sweep, blank: Blank, cells: Cells, blocks: Blocks) -> _Shares:
-    """What each bite was the first to remove, and where on its edge."""
-    part = owned(sweep, cells, blocks)
-    if blank.section is not None:
-        part = part.within(blank.section)
-    at = np.stack([part.at(share) for share in (0.0, 0.5, 1.0)], axis=1)
-    met = [sweep.evaluate(points(where), part.bite) for where in at.transpose(1, 0, 2)]
-    height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
-    best = height.argmax(axis=1)
-    each = np.arange(len(best))
-    places = Places(part.bite, at[each, best], height[each, best])
-    largest = climbed(sweep, blank, blocks, places, cells.spacing)
-    foot, slope = _foot(sweep, met[1], part.bite)
-    return _Shares(part.bite, part.volume, height @ SIMPSON, largest, met[1].instant, foot, slope)
+def _shares(sweep: Sweep, blank: Blank, cells: Cells, blocks: Blocks, side: float) -> _Shares:
+    """What each bite was the first to remove of a slab, by the squares of its edge."""
+    found, tops = [_NONE], [np.zeros((0, 3))]
+    for part in owned(sweep, cells, blocks):
+        own = part if blank.section is None else part.within(blank.section)
+        at = np.stack([own.at(share) for share in (0.0, 0.5, 1.0)], axis=1)
+        met = [sweep.evaluate(points(where), own.bite) for where in at.transpose(1, 0, 2)]
+        height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
+        best = height.argmax(axis=1)
+        each = np.arange(len(best))
+        foot, slope = _foot(sweep, met[1], own.bite)
+        shares = _Shares(
+            own.bite, own.volume, height @ SIMPSON, height[each, best], met[1].instant, foot, slope
+        )
+        together, top = shares.together(side)
+        found.append(together)
+        tops.append(at[each, best][top])
+    names = _Shares.__slots__
+    every = _Shares(*(np.concatenate([getattr(f, name) for f in found]) for name in names))
+    places = Places(every.bite, np.concatenate(tops), every.largest)
+    return replace(every, largest=climbed(sweep, blank, blocks, places, cells.spacing))
 
 
 def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:

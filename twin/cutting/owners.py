@@ -5,6 +5,7 @@ goes the way that the owner's surface is crossed the steepest, in cells: along r
 """
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +22,22 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 AROUND = 1
+TOGETHER = 1 << 18
+"""cells at a time"""
 
 
-def owned(sweep: Sweep, cells: Cells, blocks: Blocks) -> Pieces:
-    """What bites own of the cells of a slab's blocks."""
+def owned(sweep: Sweep, cells: Cells, blocks: Blocks) -> Iterator[Pieces]:
+    """What bites own of the cells of a slab's blocks, some cells at a time."""
     cell, rows = _cells(cells, blocks)
-    low, high = cells.edges(cell)
     faces = _faces(sweep, cells, blocks, cell, rows)
+    for at in range(0, len(cell), TOGETHER):
+        part = slice(at, at + TOGETHER)
+        yield _owned(sweep, cells, blocks, (cell[part], rows[part], faces[part]))
+
+
+def _owned(sweep: Sweep, cells: Cells, blocks: Blocks, part: tuple[Ints, Ints, Ints]) -> Pieces:
+    cell, rows, faces = part
+    low, high = cells.edges(cell)
     same = (faces == faces[:, :1]).all(axis=1)
     axis = np.full(len(cell), AROUND)
     mixed = np.flatnonzero(~same & cells.whole[cell[:, 0], cell[:, 2]])
