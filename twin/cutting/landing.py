@@ -5,6 +5,7 @@ away; then the surface lies between the vertex and a node of its own sheet that 
 vertex, and is searched for there.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,15 @@ class Ground:
 
     def leaf(self, points: Floats, own: Ints) -> Ints:
         """The finest block (n,) that each point lies in, or its `own`."""
+        row = self._row_at(points)
+        return np.where(row >= 0, row, own)
+
+    def passed(self, points: Floats) -> Bools:
+        """Whether the surface may pass near to points (n, 3)."""
+        return self._row_at(points) >= 0
+
+    def _row_at(self, points: Floats) -> Ints:
+        """The finest block (n,) with bites that each point lies in, or −1."""
         nr, nt, nz = self.grid.cells
         r, z = self.grid.r, self.grid.z
         i = np.searchsorted(r, np.hypot(points[:, 0], points[:, 1]), side="right") - 1
@@ -54,7 +64,7 @@ class Ground:
         low = np.stack([np.clip(i, 0, nr - 1), j, np.clip(k, 0, nz - 1)]) // LEAF * LEAF
         key = self.grid.node_id(*low)
         at = np.minimum(np.searchsorted(self._key, key), len(self._key) - 1)
-        return np.where(self._key[at] == key, self._row[at], own)
+        return np.where(self._key[at] == key, self._row[at], -1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,24 +144,43 @@ def _between(
     node, leaf = node[best], around.leaf[rows]
     other = ground.field(node, leaf).depth
     apart = (other > 0) != inside
-    near, far = np.zeros(len(rows)), np.ones(len(rows))
-    value = np.stack([found.depth, other])
     place = np.where(apart[:, None], points, crossings.point[row[best]])
-    open_ = np.flatnonzero(apart)
+    some = np.flatnonzero(apart)
+    place[some] = between(
+        lambda at, of: ground.field(at, leaf[some[of]]).depth,
+        (points[some], node[some]),
+        (found.depth[some], other[some]),
+    )
+    return place
+
+
+def between(
+    depth: Callable[[Floats, Ints], Floats], ends: tuple[Floats, Floats], at_ends: tuple[Floats, Floats]
+) -> Floats:
+    """Points (n, 3) of the surface between two `ends` each, at which the depths have different signs.
+
+    `depth` tells that at points between the ends of rows (m,). False position, with bisections between.
+    """
+    start, way = ends[0], ends[1] - ends[0]
+    inside = at_ends[0] > 0
+    near, far = np.zeros(len(start)), np.ones(len(start))
+    value = np.stack(at_ends)
+    place = start.copy()
+    open_ = np.arange(len(start))
     for turn in range(ROUNDS):
         if not len(open_):
             break
         a, b = value[:, open_]
         share = a / (a - b) if turn % 3 < 2 else np.full(len(open_), 0.5)
         at = near[open_] + share * (far[open_] - near[open_])
-        place[open_] = points[open_] + at[:, None] * (node - points)[open_]
-        depth = ground.field(place[open_], leaf[open_]).depth
-        alike = (depth > 0) == inside[open_]
+        place[open_] = start[open_] + at[:, None] * way[open_]
+        found = depth(place[open_], open_)
+        alike = (found > 0) == inside[open_]
         one, two = open_[alike], open_[~alike]
-        near[one], value[0, one] = at[alike], depth[alike]
-        far[two], value[1, two] = at[~alike], depth[~alike]
+        near[one], value[0, one] = at[alike], found[alike]
+        far[two], value[1, two] = at[~alike], found[~alike]
         # the side that stays loses weight, so that it moves soon
         value[1, one] *= 0.5
         value[0, two] *= 0.5
-        open_ = open_[np.abs(depth) > SETTLED]
+        open_ = open_[np.abs(found) > SETTLED]
     return place

@@ -7,12 +7,17 @@ from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 FEATURE = 3e-5
 """Share of an eigenvalue of the normals' scatter above which planes are taken to meet in that direction: more
 than about 0.6° apart, as feed marks and generating flats are."""
+SHARP = 0.02
+"""Share of an eigenvalue as above from which planes (16° apart) meet at an edge that a bite may have"""
 STEPS = 2
 """of Newton's method onto an edge"""
+PULLED = 0.5, 0.15, 0.04
+"""Shares of the way to places aside at which the planes beside an edge are asked, one step after the other"""
 
 
 def totals(owner: Ints, values: Floats, n: int) -> Floats:
@@ -48,3 +53,26 @@ def onto_edges(sweep: Sweep, points: Floats, owner: Ints, bite: Ints, longest: F
         step[np.linalg.norm(step, axis=1) > longest] = 0.0
         points += step
     return points
+
+
+def onto_corners(
+    sweep: Sweep, points: Floats, bite: Ints, around: tuple[Ints, Floats], longest: Floats
+) -> tuple[Floats, Bools]:
+    """Points (n, 3), each beside a sharp edge of its bite's own brought onto that, and which (n,) those are.
+
+    Such an edge, as that of a wheel's rim, shows from aside only: `around` are places beside the points,
+    owners (m,) and positions (m, 3). No step is longer than `longest` (n,) [mm].
+    """
+    points = points.copy()
+    owner, place = around
+    sharp = np.ones(len(points), dtype=bool)
+    for share in PULLED:
+        mine = sharp[owner]
+        owner, place = owner[mine], place[mine]
+        off = share * (place - points[owner])
+        found = sweep.evaluate(points[owner] + off, bite[owner], gradient=True)
+        height = np.einsum("nx,nx->n", found.gradient, off) - found.depth
+        step, values = meet(owner, found.gradient, height, len(points))
+        sharp &= (values[:, 1] > SHARP * values[:, 2]) & (np.linalg.norm(step, axis=1) < longest)
+        points[sharp] += step[sharp]
+    return points, sharp

@@ -58,14 +58,21 @@ class Worst:
 
     share: Floats
     """(n,) of the way from its first end"""
-    error: Floats
-    """(n,) [mm]"""
+    depth: Floats
+    """(n,) of the field there [mm]; 0 where nobody asked"""
+    bite: Ints
+    """(n,) the deepest there"""
     bites: Ints
     """(n, 2) deepest on either side of that place"""
 
+    @property
+    def error(self) -> Floats:
+        """(n,) [mm]"""
+        return np.abs(self.depth)
+
     def of(self, rows: Bools) -> "Worst":
         """Those of some sides."""
-        return Worst(self.share[rows], self.error[rows], self.bites[rows])
+        return Worst(self.share[rows], self.depth[rows], self.bite[rows], self.bites[rows])
 
 
 def sides_of(faces: Ints) -> Sides:
@@ -88,14 +95,15 @@ def worst_of(ground: Ground, mesh: Mesh, ends: Ints, rows: Ints, aim: float) -> 
     deep: tangents are drawn where the field was asked, and the field is asked where they meet, unless that
     is well within the `aim` [mm]. Between the ridge and the ends it is asked where it may stand as high.
     """
-    worst = Worst(np.full(len(ends), 0.5), np.zeros(len(ends)), mesh.bite[ends])
+    bites = mesh.bite[ends]
+    worst = Worst(np.full(len(ends), 0.5), np.zeros(len(ends)), bites[:, 0].copy(), bites)
 
     def asked(rows: Ints, share: Floats) -> Deepest:
         a, b = mesh.vertices[ends[rows]].transpose(1, 0, 2)
         found = ground.field(a + share[:, None] * (b - a), mesh.leaf[ends[rows, 0]])
-        worse = np.abs(found.depth) > worst.error[rows]
+        worse = np.abs(found.depth) > np.abs(worst.depth[rows])
         at = rows[worse]
-        worst.share[at], worst.error[at] = share[worse], np.abs(found.depth[worse])
+        worst.share[at], worst.depth[at], worst.bite[at] = share[worse], found.depth[worse], found.bite[worse]
         return found
 
     found = asked(rows, worst.share[rows])

@@ -2,7 +2,8 @@
 
 STL and GLB hold single precision. Vertices that are apart only in double precision, as where ridges of
 neighbouring cells meet, fall together there and leave gaps and fins; here they are joined before anybody sees
-them. Where that would let four faces meet at one edge, the vertices are kept a grid step apart instead.
+them. Where that would let four faces meet at one edge, or two fans of faces at one vertex, the vertices are
+kept some grid steps apart instead.
 """
 
 import math
@@ -46,7 +47,9 @@ def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints, Ints]:
     left, kept, number, met = _joined(places, faces)
     rng = np.random.default_rng(0)
     for turn in range(ROUNDS):
-        apart = np.isin(number, _of_shared_edges(left[met[left].any(axis=1)])) & met[number]
+        near = left[met[left].any(axis=1)]
+        shared = _of_shared_edges(near)
+        apart = np.isin(number, shared if len(shared) else _pinched(near, met)) & met[number]
         if not apart.any():
             break
         places[apart] = nearest[apart] + _towards_neighbours(vertices, faces)[apart]
@@ -99,6 +102,24 @@ def _of_shared_edges(faces: Ints) -> Ints:
     vertices = faces.max(initial=0) + 1
     passed, times = np.unique(start * vertices + end, return_counts=True)
     return np.concatenate(np.divmod(passed[times > 1], vertices))
+
+
+def _pinched(faces: Ints, met: Bools) -> Ints:
+    """Those of the vertices `met` (k,) with more than one fan of faces around them; no edge may be shared."""
+    vertex, after, before = (np.roll(faces, -step, axis=1).ravel() for step in range(3))
+    mine = met[vertex]
+    vertex, after, before = vertex[mine], after[mine], before[mine]
+    count = faces.max(initial=0) + 1
+    leaves = vertex * count + after
+    order = np.argsort(leaves)
+    # the next face around the vertex is the one that leaves it along the edge by which this one comes
+    following = order[np.searchsorted(leaves[order], vertex * count + before)] if len(order) else order
+    fan = np.arange(len(vertex))
+    for _ in range(len(vertex).bit_length()):
+        fan = np.minimum(fan, fan[following])
+        following = following[following]
+    fans = np.unique(np.column_stack([vertex, fan]), axis=0)[:, 0]
+    return np.flatnonzero(np.bincount(fans, minlength=1) > 1)
 
 
 def _towards_neighbours(vertices: Floats, faces: Ints) -> Ints:

@@ -34,12 +34,28 @@ def square_at_twice_the_speed(synthetic):
     )
 
 
+def stepped_inserts(synthetic):
+    """Shoulders square to the work axis, feet below them: edges that one insert has itself."""
+    profile = ((0.4, 0.0), (0.4, 0.5), (1.0, 0.5), (1.0, 2.0))
+    head = PolygonHead(inserts=2, tip_radius_mm=40.0, profile=profile)
+    return synthetic.polygon_turning(
+        head, ratio=6, across_flats=16.5, work_turns=6, z=(2.0, -1.5), step_deg=2.0
+    )
+
+
+def two_teeth_too_many(synthetic):
+    """Gaps that overlap: walls thinner than a cell between them."""
+    return hobbing(synthetic, ratio_factor=10.0 / 12.0)
+
+
 JOBS = {
     "the wrong hand": (GEAR, lambda s: hobbing(s, ratio_factor=-1.0), 0.35),
     "the wrong hand, sharp tips": (GEAR, lambda s: hobbing(s, SHARP, ratio_factor=-1.0), 0.35),
     "stopped halfway": (LONG, lambda s: hobbing(s, z_end=-1.0), 0.45),
     "a coarse feed": (GEAR, lambda s: hobbing(s, feed=9.0, ratio_factor=1.1), 0.35),
     "polygon with a shoulder": (BAR, square_at_twice_the_speed, 0.3),
+    "stepped inserts": (BAR, stepped_inserts, 0.2),
+    "thin walls": (GEAR, two_teeth_too_many, 0.3),
 }
 
 

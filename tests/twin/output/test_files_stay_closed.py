@@ -75,6 +75,16 @@ def test_a_tangle_far_below_single_precision_is_parted(spread):
     assert volume(vertices, faces) == pytest.approx(ball.volume, rel=1e-6)
 
 
+def test_solids_that_touch_with_a_corner_stay_two():
+    """Joined there, one vertex would stand for two fans of faces."""
+    one, two = (trimesh.creation.box(bounds=bounds) for bounds in ([[0] * 3, [1] * 3], [[1] * 3, [2] * 3]))
+    vertices = np.vstack([one.vertices, two.vertices + 1e-9])
+    faces = np.vstack([one.faces, two.faces + 8])
+    vertices, faces, _ = snapped(vertices, faces)
+    assert_closed(faces)
+    assert len(np.unique(vertices, axis=0)) == len(vertices) == 16
+
+
 @pytest.mark.parametrize("suffix", WRITERS)
 @pytest.mark.parametrize("size", [0.3, 7.9, 63.99, 64.0, 127.9, 1999.0])
 def test_slivers_below_single_precision_leave_no_gap(tmp_path, suffix, size):
