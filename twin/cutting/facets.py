@@ -29,6 +29,8 @@ SAMPLED = 4000
 """points of facets that tell it"""
 SHARPER = 2.0
 """Times what is aimed at from which a sharp edge is looked for: less than that any division halves"""
+GROWTH = 1.5
+"""Times as many sides to divide as in the round with the least: then dividing them settles nothing"""
 STRAYED = 2.0
 """Times its distance from the cut by which a point is moved to where two bites meet"""
 SLID = 0.25
@@ -78,7 +80,7 @@ def _between(ground: Ground, mesh: Mesh, limit: float) -> float:
 def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
     """The mesh with facets within `limit` [mm] of the cut."""
     asked = np.arange(len(mesh.faces))
-    aim, first = limit / INWARDS, 0
+    aim, first, least = limit / INWARDS, 0, np.inf
     for _ in range(ROUNDS):
         faces = mesh.faces[asked]
         faces = faces[mesh.cut_in(faces)]
@@ -91,8 +93,10 @@ def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
         calm = ~far[sides.of_face].any(axis=1)
         far[_bumpy(ground, mesh, faces[calm], Sides(sides.ends, sides.of_face[calm]), worst, aim=aim)] = True
         far &= lengths(mesh.vertices, sides.ends) > SHORTEST
-        if not far.any():
+        # what does not settle is left and told
+        if not 0 < far.sum() < GROWTH * least:
             break
+        least = min(least, far.sum())
         first = len(mesh.vertices)
         mesh, asked = _split(ground, mesh, blank, _Divided.of(faces, sides, far), worst.of(far), aim=aim)
     return mesh
@@ -146,7 +150,8 @@ def _split(
     points, walls = _onto_ridges(ground, worst, points, leaf)
     points[beyond[sharp]] = edges[sharp]
     bite, lost, _ = newton(ground, points, np.arange(len(points)), leaf)
-    lost[walls] |= _slid(points[walls], worst.share[walls], a[walls], b[walls])
+    walls = walls | (worst.bites[:, 0] == worst.bites[:, 1])
+    lost |= walls & _slid(points, worst.share, a, b)
     # where no bite can be the deepest the field is not known
     kept = np.flatnonzero(~lost & ground.passed(points))
     faces, new = parted(mesh.faces, ends[kept], len(mesh.vertices))
@@ -162,15 +167,18 @@ def _split(
 def _slid(points: Floats, share: Floats, a: Floats, b: Floats) -> NDArray[np.bool_]:
     """Which points (n, 3) have come from their `share` of the way from a to b most of the way to either end.
 
-    Through a wall whose top is far away a side runs from flank to flank: what lands on them divides nothing.
+    Through a wall whose top is far away a side runs from flank to flank, and so it does where one bite has an
+    edge that was not found: what lands on the flanks divides nothing.
     """
     way = b - a
     at = np.einsum("nx,nx->n", points - a, way) / np.maximum(np.einsum("nx,nx->n", way, way), 1e-300)
     return np.minimum(at / share, (1.0 - at) / (1.0 - share)) < SLID
 
 
-def _onto_ridges(ground: Ground, worst: Worst, points: Floats, leaf: Ints) -> tuple[Floats, Ints]:
-    """Points (n, 3) on sides that two bites made, brought to where those meet; which sides run through walls.
+def _onto_ridges(
+    ground: Ground, worst: Worst, points: Floats, leaf: Ints
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Points (n, 3) on sides that two bites made, brought to where those meet; which (n,) run through walls.
 
     Through a wall the side runs in metal, and its flanks meet above it, or would if nothing cut off the top:
     then the point is on the top.
@@ -194,7 +202,9 @@ def _onto_ridges(ground: Ground, worst: Worst, points: Floats, leaf: Ints) -> tu
         (start[rows[cut_off]], met[wall][cut_off]),
         (here[cut_off], there[cut_off]),
     )
-    return points, rows
+    walls = np.zeros(len(points), dtype=bool)
+    walls[rows] = True
+    return points, walls
 
 
 def _onto_corners(
