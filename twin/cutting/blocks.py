@@ -21,7 +21,6 @@ TOUCHED = 4
 FINEST = 2
 BEYOND = 1.5
 """times their radius within which these tangents are proved: who leaves a block asks them still"""
-OCTANTS = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +29,7 @@ class Blocks:
 
     grid: Grid
     key: Ints
-    """(n,) ascending; see `_key`"""
+    """(n,) ascending: `node_id` of their low corners, counted in blocks"""
     low: Ints
     """(n, 3) their low corners [cells]"""
     tangents: Tangents
@@ -44,7 +43,7 @@ class Blocks:
         k = int(low[0, 2])
         z_range = float(grid.z[k]), float(grid.z[min(k + COARSEST, len(grid.z) - 1)])
         low, tangents = _finest(sweep, grid, *_touched(sweep, grid, low))
-        key = _key(grid, low)
+        key = grid.node_id(*(low // FINEST).T)
         order = np.argsort(key)
         return cls(grid, key[order], low[order], tangents.of(order), z_range)
 
@@ -56,7 +55,7 @@ class Blocks:
         cell = np.floor((at - lowest) / step).astype(np.int64)
         cell[:, 1] %= grid.sectors
         cell[:, [0, 2]] = np.clip(cell[:, [0, 2]], 0, np.array(grid.cells)[[0, 2]] - 1)
-        key = _key(grid, cell)
+        key = grid.node_id(*(cell // FINEST).T)
         row = np.minimum(np.searchsorted(self.key, key), max(len(self.key) - 1, 0))
         return np.where(self.key[row] == key, row, -1) if len(self.key) else np.full(len(at), -1)
 
@@ -103,12 +102,6 @@ class Blocks:
         return some.take(owner), pairs, bounds
 
 
-def _key(grid: Grid, cell: Ints) -> Ints:
-    """Number (n,) of the finest block that a cell (n, 3) is in."""
-    i, j, k = (cell // FINEST).T
-    return (i * grid.sectors + j) * len(grid.z) + k
-
-
 def _touched(sweep: Sweep, grid: Grid, low: Ints) -> tuple[Ints, Tangents]:
     """The blocks of TOUCHED cells that some bite may touch, and those bites."""
     size = COARSEST
@@ -119,7 +112,7 @@ def _touched(sweep: Sweep, grid: Grid, low: Ints) -> tuple[Ints, Tangents]:
         if size == TOUCHED:
             return low, _tangents(sweep, *_balls(grid, low, size), lists)
         size //= 2
-        low, parent = _halves(grid, low, size)
+        low, parent = grid.halved(low, size)
         lists = _culled(sweep, *_balls(grid, low, size), lists.of(parent))
 
 
@@ -128,7 +121,7 @@ def _finest(sweep: Sweep, grid: Grid, low: Ints, tangents: Tangents) -> tuple[In
     size = TOUCHED
     while size > FINEST:
         size //= 2
-        low, parent = _halves(grid, low, size)
+        low, parent = grid.halved(low, size)
         middle, radius = _balls(grid, low, size)
         starts = np.concatenate([[0], np.cumsum(np.diff(tangents.lists.start)[parent])])
 
@@ -165,14 +158,6 @@ def _moved(sweep: Sweep, above: Tangents, middle: Floats, radius: Floats) -> Tan
     keep &= bites <= gone.take(owner)
     left = above.radius - np.linalg.norm(way, axis=1)
     return Tangents(above.lists.where(keep), middle, left, plane[:, keep], above.over[keep])
-
-
-def _halves(grid: Grid, low: Ints, size: int) -> tuple[Ints, Ints]:
-    """The eighths (m, 3) of blocks, of `size` cells, and the block that each is part of."""
-    parent = np.repeat(np.arange(len(low)), 8)
-    low = (low[:, None] + size * OCTANTS).reshape(-1, 3)
-    inside = (low[:, 0] < grid.cells[0]) & (low[:, 2] < grid.cells[2])
-    return low[inside], parent[inside]
 
 
 def _balls(grid: Grid, low: Ints, size: int) -> tuple[Floats, Floats]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from twin.cutting.blocks import Blocks
 from twin.cutting.cells import points
 from twin.cutting.first import NOBODY, TOGETHER, first_of
+from twin.cutting.landing import between
 from twin.cutting.pairs import in_parallel
 from twin.cutting.sweep import Sweep
 
@@ -16,9 +17,6 @@ Ints = NDArray[np.int64]
 Found = tuple[Ints, Floats, Floats, Ints]
 """Numbers (m,) of lines, from and to (m,) on them, and whose bite's (m,) that is"""
 
-ROUNDS = 12
-CLOSE = 1e-5
-"""[mm] of depth at which the end of what a bite removes counts as found"""
 BITES = 12
 """that own something between two places, at most"""
 ASIDE = 1e-3
@@ -162,32 +160,17 @@ class _March:
         )
 
     def ends(self, rows: Ints, inner: Floats, outer: Floats, bite: Ints) -> Floats:
-        """Angles (n,) where bites end on the way from `inner`, which they remove, to `outer`, or that.
-
-        By false position, kept between a removed and a kept place.
-        """
+        """Angles (n,) where bites end on the way from `inner`, which they remove, to `outer`, or that."""
         lines = self._lines
-        own = rows
 
-        def depth(rows: Ints, at: Floats) -> Floats:
-            return self._sweep.evaluate(points(lines.at(own[rows], at)), bite[rows]).depth
+        def depth(at: Floats, of: Ints) -> Floats:
+            return self._sweep.evaluate(points(at), bite[of]).depth
 
-        near, far, at = inner.copy(), outer.copy(), outer.copy()
-        value = np.zeros((2, len(own)))
-        value[1] = depth(np.arange(len(own)), far)
-        rows = np.flatnonzero(value[1] <= 0)
-        value[0, rows] = depth(rows, near[rows])
-        for _ in range(ROUNDS):
-            if not len(rows):
-                break
-            here, there = value[:, rows]
-            new = near[rows] + here / np.maximum(here - there, 1e-300) * (far[rows] - near[rows])
-            at[rows] = new
-            found = depth(rows, new)
-            removed = found > 0
-            near[rows[removed]], value[0, rows[removed]] = new[removed], found[removed]
-            far[rows[~removed]], value[1, rows[~removed]] = new[~removed], found[~removed]
-            value[1, rows[removed]] *= 0.5
-            value[0, rows[~removed]] *= 0.5
-            rows = rows[np.abs(found) > CLOSE]
+        ends = lines.at(rows, inner), lines.at(rows, outer)
+        beyond = depth(ends[1], np.arange(len(rows)))
+        some = np.flatnonzero(beyond <= 0)
+        near, far = ends[0][some], ends[1][some]
+        place = between(lambda at, of: depth(at, some[of]), (near, far), (depth(near, some), beyond[some]))
+        at = outer.copy()
+        at[some] = place[np.arange(len(some)), lines.axis[rows[some]]]
         return at

@@ -94,9 +94,10 @@ def _kept(ground: Ground, mesh: Mesh, blank: Blank, limit: float) -> Mesh:
         far[_bumpy(ground, mesh, faces[calm], Sides(sides.ends, sides.of_face[calm]), worst, aim=aim)] = True
         far &= lengths(mesh.vertices, sides.ends) > SHORTEST
         # what does not settle is left and told
-        if not 0 < far.sum() < GROWTH * least:
+        count = far.sum()
+        if not 0 < count < GROWTH * least:
             break
-        least = min(least, far.sum())
+        least = min(least, count)
         first = len(mesh.vertices)
         mesh, asked = _split(ground, mesh, blank, _Divided.of(faces, sides, far), worst.of(far), aim=aim)
     return mesh

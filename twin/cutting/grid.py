@@ -13,6 +13,7 @@ BLOCK = 32
 """Cells along the edge of the coarsest block."""
 FEWEST = 6
 """Coarsest blocks around: fewer make hulls that stand far out of them."""
+OCTANTS = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,6 +67,13 @@ class Grid:
     def node_id(self, i: Ints, j: Ints, k: Ints) -> Ints:
         """Flat index into an array of `node_shape`."""
         return (i * self.sectors + j % self.sectors) * len(self.z) + k
+
+    def halved(self, low: Ints, size: int) -> tuple[Ints, Ints]:
+        """The eighths (m, 3), of `size` cells, of blocks (n, 3), and the block (m,) that each is part of."""
+        parent = np.repeat(np.arange(len(low)), len(OCTANTS))
+        low = (low[:, None] + size * OCTANTS).reshape(-1, 3)
+        inside = (low[:, 0] < self.cells[0]) & (low[:, 2] < self.cells[2])
+        return low[inside], parent[inside]
 
     def hulls(self, low: Ints, size: int) -> tuple[Floats, Floats]:
         """Middles (n, 3) and corners (n, 8, 3) of convex hulls around the blocks of `size` cells.

@@ -27,7 +27,6 @@ Bools = NDArray[np.bool_]
 
 LEAF = 2
 """Cells along the edge of the finest block."""
-OCTANTS = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +75,8 @@ def refine(sweep: Sweep, grid: Grid) -> Leaves:
         if size == LEAF:
             break
         size //= 2
-        parent = np.repeat(np.arange(len(low)), 8)
-        low = (low[:, None, :] + size * OCTANTS).reshape(-1, 3)
-        inside = (low[:, 0] < nr) & (low[:, 2] < nz)
-        low = low[inside]
-        done = cull(sweep, *grid.hulls(low, size), parent[inside], tangents)
+        low, parent = grid.halved(low, size)
+        done = cull(sweep, *grid.hulls(low, size), parent, tangents)
         pairs += done.pairs
     shut = np.concatenate(closing)
     tangents = joined([tangents, without_bites(grid.hulls(shut, LEAF)[0])])
@@ -92,12 +88,11 @@ def _closing(grid: Grid, low: Ints, size: int) -> Ints:
 
     No bite makes those faces: the leaves need none.
     """
-    nr, _, nz = grid.cells
     low = low[_outermost(grid, low, size)]
     while size > LEAF:
         size //= 2
-        low = (low[:, None, :] + size * OCTANTS).reshape(-1, 3)
-        low = low[(low[:, 0] < nr) & (low[:, 2] < nz) & _outermost(grid, low, size)]
+        low, _ = grid.halved(low, size)
+        low = low[_outermost(grid, low, size)]
     return low
 
 
