@@ -111,6 +111,8 @@ def cut(
     remains = subtract(blank, *surfaces)
     times = [moments(sweep, tuple(motion for _, motion in tools), one) for one in surfaces]
     notes += _severed(remains)
+    if (remains.origin < 0).all():
+        notes.append("the tool passed the blank without touching it: nothing was cut")
     progress("done", 1.0)
     return CutResult(
         remains=remains,
@@ -164,9 +166,7 @@ def _general(
     depth = node_depths(sweep, grid, leaves)
     none = Errors(np.zeros((0, 3)), np.zeros(0))
     if not (depth > 0).any():
-        return _Made(
-            None, none, none, leaves.pairs, ["the tool passed the blank without touching it: nothing was cut"]
-        )
+        return _Made(None, none, none, leaves.pairs, [])
     notes = []
     if (depth[1] > 0).any() and max(closest, 0.5 * blank.bore_mm) <= CORE * blank.radius:
         notes.append(f"the cut reaches the work axis; a core of {grid.r[0] + grid.r[1]:.2f} mm is kept")

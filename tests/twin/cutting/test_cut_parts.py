@@ -167,6 +167,17 @@ def test_a_tool_that_stays_away_leaves_the_blank(synthetic):
     assert result.notes == ("no edge ever swung past the blank: nothing was cut",)
 
 
+@pytest.mark.parametrize("gap", [1e-4, 0.01, 1.0])
+def test_a_tool_that_passes_just_beside_the_blank_is_told(synthetic, gap):
+    blank = Blank(diameter_mm=19.0, length_mm=3.0)
+    tool = synthetic.polygon_turning(
+        HEAD, ratio=2, across_flats=19.0 + 2 * gap, work_turns=2, z=(1.0, -4.0), step_deg=2.0
+    )
+    result = cut(blank, (tool,), cell_mm=0.5)
+    assert result.remains.volume_mm3 == pytest.approx(result.remains.blank_volume_mm3, rel=1e-14)
+    assert any(note.endswith("nothing was cut") for note in result.notes)
+
+
 def test_a_standing_tool_that_the_work_rubs_on_is_told(synthetic):
     blank = Blank(diameter_mm=19.0, length_mm=3.0)
     cutter, motion = synthetic.polygon_turning(
