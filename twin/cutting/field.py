@@ -171,7 +171,9 @@ class DepthField:
         turn = C'/a: |G_pp| <= 1/rho, |G_pt| <= C' + v/rho, |G_tt| <= C'v + v²/rho, |t_p| <= 1/a and
         |t_pp| <= (1/rho + 2 (2 slant/rho + turn) + ...)/a, in sum (1 + slant)^4/rho + 2 (1 + slant)² turn.
         A velocity jump between two samples adds its share of the way that remains. On a helicoid the same
-        holds with a = `Cutter.lever` · turn − v, see docs/kernel.md.
+        holds with a = `Cutter.lever` · turn − v, see docs/kernel.md. The tool turns by at most
+        (1 + slant)/`lever` from meeting to meeting within 1 mm: a run that ends later than that, and further
+        off than the bite is deep, is as one without end. Near the end nothing bounds what the map bends.
         """
         index = bite // self.bites
         p = self.passes
@@ -190,12 +192,19 @@ class DepthField:
         jolt = p.jolt.take(index) * slower * np.maximum(slower, 1.0)
         creep = p.creep.take(index)
         bent = 0.5 * curvature * radius * radius + jolt * radius * jumps + creep
-        partial = self._partial.take(index)
-        # the way to the rake face where the sweep ends: rho times an angle
-        far = meeting.rho + 2.0 * radius
-        change = np.where(partial, radius * (far / self.cutter.lever(far) + WIDEST + slant), change) + creep
+        rows = np.flatnonzero(self._partial.take(index))
+        if len(rows):
+            away = radius[rows] * (1.0 + slant[rows]) / self.cutter.lever(low[rows])
+            left = self._rake.left_to_run(meeting.instant[rows], index[rows]) - away
+            high = np.maximum(meeting.depth[rows] + change[rows], 0.0)
+            rows = rows[(low[rows] * np.minimum(left, WIDEST) <= high) | (creep[rows] > 0)]
+            # the way to the rake face where the sweep ends: rho times an angle
+            far = meeting.rho[rows] + 2.0 * radius[rows]
+            change[rows] = radius[rows] * (far / self.cutter.lever(far) + WIDEST + slant[rows])
+            bent[rows] = np.inf
+        change += creep
         change[~proved] = np.inf
-        bent[~proved | partial] = np.inf
+        bent[~proved] = np.inf
         return change, bent
 
     def near(self, point: Floats, radius: float, among: Ints | None = None) -> Ints:

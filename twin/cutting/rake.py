@@ -101,7 +101,7 @@ class Rake:
             wanted = (at[rows] - state.lag / state.lag_rate)[left]
             rows = rows[left]
             at[rows] = np.clip(wanted, first[rows], last[rows])
-        at[rows] = self._bisect(local[:, rows], first[rows], last[rows], angle[rows])
+        at[rows] = self._between(local[:, rows], first[rows], last[rows], angle[rows])
         return at
 
     def _unsettled(self, state: State, at: Floats, first: Floats, last: Floats) -> Ints:
@@ -111,16 +111,29 @@ class Rake:
         held = ((at == first) & (wanted < first)) | ((at == last) & (wanted > last))
         return np.flatnonzero(free & ~held)
 
-    def _bisect(self, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
-        """Meeting instants by halving, where Newton's steps go round in circles: S changes too much."""
+    def _between(self, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
+        """Meeting instants where Newton's steps go round in circles: S changes too much, or everything rests.
+
+        The meeting lies between two instants, which Newton's steps and halvings bring together.
+        """
+        at_first, at_last = (self._state(local, at, angle).lag for at in (first, last))
+        falling = at_first > at_last
         low, high = first.copy(), last.copy()
-        falling = self._state(local, low, angle).lag > self._state(local, high, angle).lag
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            early = (self._state(local, middle, angle).lag < 0) != falling
-            low = np.where(early, middle, low)
-            high = np.where(early, high, middle)
-        return low
+        at = np.where((at_first < 0) != falling, last, first)
+        rows = np.flatnonzero((at_first < 0) != (at_last < 0))
+        at[rows] = 0.5 * (low[rows] + high[rows])
+        for turn in range(HALVINGS):
+            state = self._state(local[:, rows], at[rows], angle[rows])
+            early = (state.lag < 0) != falling[rows]
+            low[rows[early]], high[rows[~early]] = at[rows[early]], at[rows[~early]]
+            left = self._unsettled(state, at[rows], first[rows], last[rows])
+            if not len(left):
+                break
+            step = (at[rows] - state.lag / state.lag_rate)[left]
+            rows = rows[left]
+            within = (step > low[rows]) & (step < high[rows]) & (turn % 3 < 2)
+            at[rows] = np.where(within, step, 0.5 * (low[rows] + high[rows]))
+        return at
 
     def _state(self, local: Floats, at: Floats, angle: Floats) -> State:
         """Points `local` (3, m) at fractional samples `at` (m,), edges at unwrapped tool `angle`."""
@@ -169,6 +182,13 @@ class Rake:
             tool_rate=d_tool,
             lean=lean,
         )
+
+    def left_to_run(self, instant: Floats, index: Ints) -> Floats:
+        """Angle (m,) of the tool from an `instant` (m,) to the nearer end of its pass's run."""
+        cell = np.minimum(instant.astype(np.int64), len(self._table) - 1)
+        line = self._table.take(cell, axis=0)
+        tool = line[:, 1] + (instant - cell) * line[:, 6]
+        return np.minimum(*np.abs(self.passes.run_angle.take(index, axis=0) - tool[:, None]).T)
 
     def gradient(self, state: State, by: tuple[Floats, Floats], by_turn: Floats, follows: Floats) -> Floats:
         """Gradient (m, 3) in the part frame; the meeting instant `follows` the point (1) or not (0).

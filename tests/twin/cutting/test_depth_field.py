@@ -89,6 +89,33 @@ def test_bounds_hold_around_a_point(cut, seed):
     assert (there.depth <= tangent + bent + 1e-9).all()
 
 
+@pytest.mark.parametrize("gash", ["straight", "helical"])
+def test_bounds_hold_where_the_tool_stops_and_starts_again(synthetic, gash):
+    """Passes whose run ends while they are at the work: bounded, but next to the edges that stand."""
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, starts=3, gash=gash)
+    cutter, motion = synthetic.hobbing(hob, teeth=20, tip_x=17.5, z=(2, -2), feed=2, step_deg=5)
+    speed = np.concatenate([np.ones(600), np.linspace(1, 0, 50), np.linspace(0, 1, 50), np.ones(200)])
+    field = DepthField(cutter, synthetic.at_speed(motion, speed), 22.0, (-3.0, 3.0))
+    rng = np.random.default_rng(3)
+    n = 40_000
+    r, angle = rng.uniform(17.0, 22.0, n), rng.uniform(0.0, 2.0 * math.pi, n)
+    points = np.column_stack([r * np.cos(angle), r * np.sin(angle), rng.uniform(-2.0, 2.0, n)])
+    ended = np.flatnonzero(np.ptp(field.passes.run_angle, axis=1) < np.ptp(motion.tool_angle))
+    bites = rng.choice(ended, n) * field.bites + rng.integers(0, field.bites, n)
+    radius = 10.0 ** rng.uniform(-2.0, 0.5, n)
+    way = rng.standard_normal((n, 3))
+    way *= (radius * rng.uniform(0.5, 1.0, n) / np.linalg.norm(way, axis=1))[:, None]
+    here = field.evaluate_bite(points, bites, gradient=True)
+    change, bent = field.bound(here, bites, radius)
+    depth = field.evaluate_bite(points + way, bites).depth
+    near = here.depth > -10.0
+    assert (np.abs(depth - here.depth) <= change + 1e-9)[near].all()
+    assert (depth <= here.depth + (here.gradient * way).sum(axis=1) + bent + 1e-9).all()
+    met_at_the_end = np.isin(here.instant, np.concatenate([field.passes.first, field.passes.last]))
+    assert np.isinf(bent[met_at_the_end]).all()
+    assert np.isfinite(bent[~met_at_the_end & near]).mean() > 0.5
+
+
 @few
 @given(cut=cuts, seed=st.integers(0, 1000))
 def test_a_pass_is_as_deep_as_its_deepest_bite(cut, seed):

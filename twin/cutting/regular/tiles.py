@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from twin.cutting.local import Tangents, can_matter, joined
 from twin.cutting.meeting import Meeting
-from twin.cutting.pairs import Candidates, batches, in_parallel, leaders
+from twin.cutting.pairs import Candidates, batches, in_parallel, join, leaders
 from twin.cutting.regular.chart import Chart
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.patches import Blocks, Patches, blocks, columns, quarters
@@ -42,7 +42,11 @@ ROUNDS = 3
 ROUND = 3.5
 """Edge of a tile over the root of thickness and radius where the gap bends most: a quarter of it keeps to its
 tangent within a third of the thickness."""
+UNSURE = {2: 100, 3: 10}
+"""Sizes that were searched -> bites of a block, on the average, that may touch what lies behind it, from
+which on smaller blocks are not tried. On regular cuts 30 at most are left of two, and hardly one of three."""
 UNCUT = "the gaps are not cut all along"
+OUTSIDE = "something is cut outside of the gaps"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,10 +98,12 @@ def search(
     block = blocks(chart, patch, sizes[0][1])
     held = first_held(sweep, block, sweep.near(*columns(block)))
     pairs = held.pairs
-    for size, thick in sizes[1:]:
+    for number, (size, thick) in enumerate(sizes[1:], 1):
         patch, parent = quarters(patch, size)
         held = refined(sweep, blocks(chart, patch, thick), parent, held)
         pairs += held.pairs
+        if np.count_nonzero(~held.safe) > UNSURE.get(number, np.inf) * len(parent):
+            raise IrregularError(OUTSIDE)
     _settle(sweep, chart, patch, held, sizes[-1][1])
     return patch, Held(held.tangents, held.safe, pairs)
 
@@ -113,11 +119,21 @@ def _settle(sweep: Sweep, chart: Chart, patch: Patches, held: Held, thick: float
         size = (int((np.ptp(edges, axis=1).max() + 1) // 2) for edges in (patch.i, patch.k))
         patch, parent = quarters(patch, (next(size), next(size)))
         lists = lists.of(some[parent])
-        block, owner = blocks(chart, patch, thick), lists.owner()
-        meeting = sweep.evaluate(block.middle.take(owner, axis=0), lists.bites, gradient=True)
-        lists = lists.where(~_stays_out(sweep, block, owner, lists.bites, meeting))
+        lists = _reaching_out(sweep, blocks(chart, patch, thick), lists)
     if len(lists.bites):
-        raise IrregularError("something is cut outside of the gaps")
+        raise IrregularError(OUTSIDE)
+
+
+def _reaching_out(sweep: Sweep, block: Blocks, lists: Candidates) -> Candidates:
+    """The bites of blocks that may touch what lies behind the shell."""
+
+    def work(part: slice) -> Candidates:
+        here, own = block.of(part), lists.of(np.arange(part.start, part.stop))
+        owner = own.owner()
+        meeting = sweep.evaluate(here.middle.take(owner, axis=0), own.bites, gradient=True)
+        return own.where(~_stays_out(sweep, here, owner, own.bites, meeting))
+
+    return join(in_parallel(work, batches(lists.start)))
 
 
 def refined(sweep: Sweep, block: Blocks, parent: Ints, held: Held) -> Held:
