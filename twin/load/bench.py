@@ -11,7 +11,8 @@ from twin.kinematics import cutter_motion
 from twin.load.forces import Clock, Stiff, cutting_load
 from twin.load.material import material_of
 from twin.load.reach import may_meet
-from twin.load.removal import Removal, pieces, removal
+from twin.load.removal import Removal, pieces
+from twin.load.search import Search
 from twin.load.span import Span, span_of
 from twin.load.stiffness import stiffness_of
 from twin.load.stock import Stock
@@ -55,10 +56,13 @@ class Bench:
         time_s = np.asarray((span.tick + 1) * self.tick_s, dtype=np.float64)
         return cutter_motion(mounted.kinematics, time_s, span.actual, pushed)
 
-    def metal(self, stock: Stock, tool: int, motion: CutterMotion, span: Span) -> Removal:
+    def search(self, stock: Stock) -> Search:
+        """For the metal of a window."""
+        return Search(stock, radius=self.blank.radius, tick_s=self.tick_s)
+
+    def metal(self, search: Search, tool: int, motion: CutterMotion, span: Span) -> Removal:
         """What the tool takes off the stock in a span, and in the ticks next to it."""
-        field = self._field(stock, tool, motion, span)
-        return Removal.none() if field is None else removal(stock, field, motion, span.between(self.tick_s))
+        return search.metal(self._field(search.stock, tool, motion, span), motion, span)
 
     def first_cut(self, stock: Stock, tool: int, span: Span) -> int | None:
         """The first tick of a span in which metal is cut."""
@@ -66,8 +70,10 @@ class Bench:
         field = self._field(stock, tool, motion, span)
         if field is None:
             return None
-        some = next(pieces(stock, field, motion, span.between(self.tick_s)), None)
-        return None if some is None else int(some.time_s.min() / self.tick_s)
+        for some, _ in pieces(stock, field, motion, span.between(self.tick_s)):
+            if len(some.ray):
+                return int(some.time_s.min() / self.tick_s)
+        return None
 
     def forces(self, tool: int, metal: Removal, motion: CutterMotion, span: Span) -> Stiff:
         """That removing the metal puts on the machine."""

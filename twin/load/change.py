@@ -16,8 +16,8 @@ UM = 1e3
 def change_um(
     before: CutterMotion, after: CutterMotion, ticks: Ints, *, radius: float, tick_s: float
 ) -> Floats:
-    """(m, 4) how the tool's place (3,) and the stock's surface about its axis have changed [µm], in those of
-    the `ticks` that both runs have.
+    """(m, 5) how the tool's place (3,) and the stock's surface about its axis have changed [µm], and by how
+    much sooner the tool comes [ticks], in those of the `ticks` that both runs have.
 
     Compared where the edges stand alike: an edge that comes late meets the metal where that has gone on to.
     """
@@ -28,18 +28,18 @@ def change_um(
     rate = np.gradient(new, axis=0)[b]
     turned, turning = after.tool_angle[b] - before.tool_angle[a], np.gradient(after.tool_angle)[b]
     late = np.divide(turned, turning, out=np.zeros(len(b)), where=np.abs(turning) > STILL)
-    return (new[b] - old[a] - late[:, None] * rate) * UM
+    return np.column_stack([(new[b] - old[a] - late[:, None] * rate) * UM, late])
 
 
 def bound_um(change: Floats) -> float:
-    """How far at most the part's surface has moved in a change (m, 4) [µm]: by the tool's way and the stock's
+    """How far at most the part's surface has moved in a change (m, 5) [µm]: by the tool's way and the stock's
     turn together."""
     moved = np.linalg.norm(change[:, :3], axis=1) + np.abs(change[:, 3])
     return float(moved.max(initial=0.0))
 
 
 def dominant_hz(change: Floats, ticks: Ints, tick_s: float) -> float:
-    """Frequency [Hz] with the largest amplitude in a change (m, 4); none while nothing is cut."""
+    """Frequency [Hz] with the largest amplitude in a change (m, k); none while nothing is cut."""
     if len(ticks) < 2:
         return 0.0
     whole = np.zeros((int(ticks[-1] - ticks[0]) + 1, change.shape[1]))

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from twin.cutting.field import DepthField
 from twin.cutting.motion import CutterMotion
 from twin.cutting.pairs import batches, in_parallel
-from twin.load.ray_ends import cut_at
+from twin.load.contacts import CLOSE_BY, Contacts
+from twin.load.ray_ends import Ends, cut_at, followed
 from twin.load.reach import Reach, at_samples
 from twin.load.stock import Stock
 
@@ -72,9 +73,21 @@ class Removal:
         """(n,) when the edge is in the middle of the piece."""
         return self.time_s.mean(axis=1)
 
+    @classmethod
+    def joined(cls, parts: list["Removal"]) -> "Removal":
+        """Pieces one after the other."""
+        names = [f.name for f in fields(cls)]
+        parts = [cls.none(), *parts]
+        return cls(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
     def of(self, rows: Bools) -> "Removal":
         """Some of the pieces."""
         return Removal(**{f.name: getattr(self, f.name)[rows] for f in fields(Removal)})
+
+    def in_time(self, between: tuple[float, float]) -> "Removal":
+        """Those in the middle of which the edge is from one time to another [s]."""
+        middle = self.middle_s
+        return self.of((middle >= between[0]) & (middle < between[1]))
 
     def taken_from(self, stock: Stock) -> Stock:
         """What they leave of the stock."""
@@ -87,39 +100,74 @@ def removal(
     stock: Stock, field: DepthField, motion: CutterMotion, between: tuple[float, float] = ALWAYS
 ) -> Removal:
     """What the passes of a field take off the stock from one time to another [s]."""
-    names = [f.name for f in fields(Removal)]
-    parts = [Removal.none(), *pieces(stock, field, motion, between)]
-    return Removal(**{n: np.concatenate([getattr(part, n) for part in parts]) for n in names})
+    return looked_for(stock, field, motion, between)[0]
+
+
+def looked_for(
+    stock: Stock,
+    field: DepthField,
+    motion: CutterMotion,
+    between: tuple[float, float] = ALWAYS,
+    spare_s: float = 0.0,
+) -> tuple[Removal, Contacts]:
+    """The same, and every contact up to `spare_s` before and after."""
+    parts = list(pieces(stock, field, motion, between, spare_s))
+    return Removal.joined([part for part, _ in parts]), Contacts.joined([near for _, near in parts])
 
 
 def pieces(
-    stock: Stock, field: DepthField, motion: CutterMotion, between: tuple[float, float] = ALWAYS
-) -> Iterator[Removal]:
-    """The same, some passes after the other; none that takes nothing."""
+    stock: Stock,
+    field: DepthField,
+    motion: CutterMotion,
+    between: tuple[float, float] = ALWAYS,
+    spare_s: float = 0.0,
+) -> Iterator[tuple[Removal, Contacts]]:
+    """The same, some passes after the other."""
     left = stock.copy()
-    passes = Reach(field, motion, left, between).passes()
+    wide = between[0] - spare_s, between[1] + spare_s
+    passes = Reach(field, motion, left, wide).passes()
     for first in range(0, len(passes), PASSES):
-        reach = Reach(field, motion, left, between)
-        part = _cut(field, motion, left, reach.pairs(passes[first : first + PASSES]))
-        middle = part.middle_s
-        part = part.of((middle >= between[0]) & (middle < between[1]))
-        if len(part.ray):
-            yield part
-            left = part.taken_from(left)
+        reach = Reach(field, motion, left, wide)
+        ray, index = reach.pairs(passes[first : first + PASSES])
+        high = left.end[ray]
+        parts = batches(np.arange(len(ray) + 1))
+        ends = in_parallel(
+            lambda part: cut_at(field, left, (ray[part], index[part]), high[part]),  # noqa: B023 - run at once
+            parts,
+        )
+        near = Contacts.near(field, ray, index, high, Ends.joined(ends))
+        part = _taken(field, motion, left, near, near.index).in_time(between)
+        yield part, near
+        left = part.taken_from(left)
 
 
-def _cut(field: DepthField, motion: CutterMotion, rays: Stock, pairs: tuple[Ints, Ints]) -> Removal:
-    """What passes take of rays, in pairs."""
-    ray, index = pairs
-    parts = batches(np.arange(len(ray) + 1))
-    ends = in_parallel(lambda part: cut_at(field, rays, ray[part], index[part]), parts)
-    end = np.concatenate([np.zeros(0), *ends])
+def looked_for_again(
+    stock: Stock,
+    known: Contacts,
+    field: DepthField,
+    motion: CutterMotion,
+    between: tuple[float, float] = ALWAYS,
+) -> tuple[Removal, Contacts] | None:
+    """The same as `looked_for` on a motion within CLOSE_BY of the one that contacts are `known` from; None
+    where it has not their passes."""
+    index = known.passes_of(field)
+    if index is None:
+        return None
+    high = np.minimum(known.high + CLOSE_BY, stock.end[known.ray])
+    ends = followed(field, stock, (known.ray, index), high, known.ends)
+    near = known.with_ends(ends)
+    return _taken(field, motion, stock, near, index).in_time(between), near
+
+
+def _taken(field: DepthField, motion: CutterMotion, rays: Stock, near: Contacts, index: Ints) -> Removal:
+    """What passes, `index` (n,) of the contacts, take of rays."""
     # on each ray only what stands when its pass comes: the shortest that earlier passes have left
-    order = np.lexsort((index, ray))
-    ray, index, end = ray[order], index[order], end[order]
+    order = np.lexsort((index, near.ray))
+    ray, end = near.ray[order], near.ends.radius[order]
     start = _shortest_before(ray, rays.end[ray], end)
     some = np.flatnonzero(end < start - THINNEST)
-    return _seen(field, motion, rays, (ray[some], index[some], end[some], start[some]))
+    pairs = ray[some], index[order[some]]
+    return _seen(field, motion, rays, pairs, near.ends.of(order[some]), start[some])
 
 
 def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:
@@ -135,11 +183,13 @@ def _seen(
     field: DepthField,
     motion: CutterMotion,
     rays: Stock,
-    pieces: tuple[Ints, Ints, Floats, Floats],
+    pairs: tuple[Ints, Ints],
+    low: Ends,
+    start: Floats,
 ) -> Removal:
     """Pieces of rays, from their ends to where they stood, as the edges see them that take them away."""
-    ray, index, end, start = pieces
-    low, high = (field.evaluate(rays.points(ray, radius), index) for radius in (end, start))
+    (ray, index), end = pairs, low.radius
+    high = field.evaluate(rays.points(ray, start), index)
     # the edge that has left the new surface is the one that bears the force
     _, by_s, by_rho = field.cutter.profile.depth(low.s, low.rho)
     middle = 0.5 * (low.instant + high.instant)

@@ -166,7 +166,7 @@ class Rounds:
         load, moved = self._guess(chunk), list[float]()
         before: CutterMotion | None = None
         step = Relaxation()
-        metal = Removal.none()
+        metal, search = Removal.none(), bench.search(self.stock)
         while True:
             pressed = self._acted.then(load)
             feedback = self.course.trial(chunk, pressed if len(load.cell) else None)
@@ -186,7 +186,7 @@ class Rounds:
                         settled=moved[-1] < SETTLED_UM,
                         slowest=_slowest(self._told(feedback), load, span),
                     )
-            metal = bench.metal(self.stock, tool, motion, span)
+            metal = bench.metal(search, tool, motion, span)
             found = bench.forces(tool, metal, motion, span).and_also(self._tail)
             if not len(found.load.cell):
                 return Settled(
