@@ -72,6 +72,15 @@ class Tape:
         return Tape(**{name: np.concatenate([getattr(t, name) for t in (none, *tapes)]) for name in names})
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trial:
+    """A chunk gone through on a copy of the machine."""
+
+    feedback: Feedback
+    machine: Machine
+    """as it stands after it"""
+
+
 class Course:
     """How far a program has come, and what it has left on tape."""
 
@@ -115,14 +124,18 @@ class Course:
         chunk = controller.propose(limit)
         return chunk if chunk.ticks else None
 
-    def trial(self, chunk: Chunk, load: Load | None = None) -> Feedback:
+    def trial(self, chunk: Chunk, load: Load | None = None) -> Trial:
         """What the machine would make of a chunk; it stays where it is."""
-        return copy.deepcopy(self._machine).advance(chunk, load)
+        machine = copy.deepcopy(self._machine)
+        return Trial(feedback=machine.advance(chunk, load), machine=machine)
 
-    def take(self, chunk: Chunk, load: Load | None = None) -> Feedback:
-        """Go through a chunk. Raises PartError for a run beyond LONGEST_RUN_S."""
+    def take(self, chunk: Chunk, load: Load | None = None, *, tried: Trial | None = None) -> Feedback:
+        """Go through a chunk, as it was `tried` last if it was. Raises PartError for a run beyond
+        LONGEST_RUN_S."""
         controller = self.controller
-        feedback = self._machine.advance(chunk, load)
+        if tried is not None:
+            self._machine = tried.machine
+        feedback = self._machine.advance(chunk, load) if tried is None else tried.feedback
         self._tapes.append(Tape.of(chunk, feedback, controller.tick_s))
         controller.commit(feedback)
         self._recorded += feedback.ticks

@@ -11,7 +11,7 @@ from twin.load.ray_ends import SLACK, Ends
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-CLOSE_BY = 8e-3
+CLOSE_BY = 12e-3
 """[mm] by which edges may stand elsewhere against the metal in a motion close by"""
 NEAR = SLACK
 """[mm] of depth that a contact may lack: twice and a half what such a motion can give it, for the ray may

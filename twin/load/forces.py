@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from twin.cutting.motion import CutterMotion
 from twin.kinematics import Kinematics
@@ -172,9 +173,11 @@ def _by_cell(span: Floats, rows: Floats, since: int) -> tuple[Ints, Floats]:
     ticks = first[owner] + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     overlap = np.minimum(end[owner], ticks + 1) - np.maximum(begin[owner], ticks)
     share = overlap / (end - begin)[owner]
-    order = np.argsort(ticks, kind="stable")
-    cell, start = np.unique(ticks[order], return_index=True)
-    if not len(cell):
-        return cell, np.zeros((0, rows.shape[1]))
-    spread = (rows[owner] * share[:, None])[order]
-    return cell, np.add.reduceat(spread, start, axis=0)
+    if not len(ticks):
+        return ticks, np.zeros((0, rows.shape[1]))
+    lowest = int(ticks.min())
+    present = np.zeros(int(ticks.max()) - lowest + 1, dtype=bool)
+    present[ticks - lowest] = True
+    row = (np.cumsum(present) - 1)[ticks - lowest]
+    shares = csr_array((share, (row, owner)), shape=(int(row.max()) + 1, len(rows)))
+    return lowest + np.flatnonzero(present), shares @ rows

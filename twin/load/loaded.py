@@ -13,7 +13,7 @@ from twin.job.schema import Job
 from twin.load.change import dominant_hz
 from twin.load.lines import Line, largest_line
 from twin.load.material import Material
-from twin.load.rounds import TICKS, Rounds, Settled
+from twin.load.rounds import TICKS, Rounds, Window
 from twin.load.stiffness import Stiffness
 from twin.load.timeline import CuttingLoad, joined
 from twin.load.walls import slope_of
@@ -140,7 +140,7 @@ def _frequency(run: LoadedRun) -> float:
     return dominant_hz(give - give.mean(axis=0), ticks[heard], run.tick_s)
 
 
-def _asked(run: LoadedRun, last: Settled) -> float:
+def _asked(run: LoadedRun, last: Window) -> float:
     """Largest torque that the last window's metal asks of the tool [N m]."""
     whole = last.load.whole().axes[:, run.load.spindle]
     return float(np.abs(whole).max(initial=0.0))
@@ -152,7 +152,7 @@ def _place(session: Session) -> Place:
     return Place(file=block.file, line=block.line)
 
 
-def _stalled(run: LoadedRun, last: Settled) -> Alarm:
+def _stalled(run: LoadedRun, last: Window) -> Alarm:
     recording, limit, load = run.session.recording, run.torque_limit, run.load
     recent = load.axes[load.cell > load.cell[-1] - round(HEARD_S / run.tick_s), load.spindle]
     asked = max(_asked(run, last), float(np.abs(recent).max(initial=0.0)))
@@ -168,7 +168,7 @@ def _stalled(run: LoadedRun, last: Settled) -> Alarm:
     return Alarm(number="HT9041", found=found, span=_place(run.session))
 
 
-def _unstable(run: LoadedRun, last: Settled) -> Alarm:
+def _unstable(run: LoadedRun, last: Window) -> Alarm:
     rounds = ", ".join(f"{one:.3g}" for one in last.moved_um)
     return Alarm(
         number="HT9040",

@@ -23,7 +23,7 @@ FLAT = 1e-9
 """[mm] of a way over which no growth is found"""
 CLOSE = 1e-5
 """[mm] of depth at which the end of a ray counts as found"""
-SLACK = 0.02
+SLACK = 0.03
 """[mm] added to the way of the stock until it meets an edge"""
 
 
@@ -97,9 +97,7 @@ def cut_at(field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Float
     return out
 
 
-def followed(
-    field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Floats, known: Ends
-) -> Ends:
+def followed(field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Floats, known: Ends) -> Ends:
     """The same as `cut_at`, of rays that reach to `high` (n,), where the ends are `known` on a motion close
     by: secants from there; an end that is not found so is looked for as if nothing were known."""
     ray, index = pairs
@@ -174,7 +172,7 @@ def _zero(
 
 
 def _growth(way: Floats, change: Floats, known: Floats) -> Floats:
-    """(n,) of the depth over a `way` in which it has changed; what is `known` of it where that says nothing."""
+    """(n,) of the depth over a `way` in which it has changed; as it is `known` where that says nothing."""
     with np.errstate(divide="ignore", invalid="ignore"):
         growth = change / way
     return np.where((np.abs(way) > FLAT) & (growth > 0.0), growth, known)

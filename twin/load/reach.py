@@ -9,6 +9,7 @@ from twin.cutters.cutter import Cutter
 from twin.cutting.field import DepthField
 from twin.cutting.motion import CutterMotion
 from twin.cutting.passes import REACH
+from twin.load.evenly import Evenly
 from twin.load.ray_ends import SLACK
 from twin.load.stock import Stock
 
@@ -106,14 +107,29 @@ class Reach:
             b = off_x * across[0] + off_y * across[1] + off_z * across[2]
             near = np.flatnonzero(a * a + b * b < (radius + p.travel[index] + SLACK) ** 2)
             rho, turn = np.hypot(a[near], b[near]), np.arctan2(b[near], a[near])
-            s = off_x[near] * axis[0] + off_y[near] * axis[1] + off_z[near] * axis[2] - p.shift[index]
+            s = off_x[near] * axis[0] + off_y[near] * axis[1] + off_z[near] * axis[2]
             # the sooner or later the edge comes, the further the stock has gone on
             later = (np.abs(turn) + self._along) / (REACH + self._along)
-            way = p.travel[index] * np.minimum(later, 1.0) + SLACK
+            way = p.travel[index] * np.minimum(later, 1.0)
+            if (evenly := self._evenly(index)) is not None:
+                met, bound = evenly.met(np.stack([off_x[near], off_y[near], off_z[near]]), turn)
+                known = bound < way
+                rho, s = np.where(known, np.hypot(met[0], met[1]), rho), np.where(known, met[2], s)
+                way = np.minimum(bound, way)
+            way += SLACK
             # depth grows no faster than the way
-            meets = profile.depth(s, rho)[0] > -way
+            meets = profile.depth(s - p.shift[index], rho)[0] > -way
             rays.append(standing[near[meets & self._timely(index, turn, radius + way - rho)]])
         return np.concatenate(rays), np.repeat(passes, [len(one) for one in rays[1:]])
+
+    def _evenly(self, index: int) -> Evenly | None:
+        """The motion in a pass, where that tells when points meet its edge."""
+        if self._along or self._motion.lean is not None:
+            return None
+        nearest = float(self._nearest(np.array([index]))[0])
+        arc = math.acos(min(max(nearest / self._field.cutter.radius, -1.0), 1.0))
+        far = float(self._stock.end.max(initial=0.0)) + self._shift
+        return Evenly.of(self._motion, float(self._field.passes.angle[index]), far, min(2.0 * arc, REACH))
 
     def _timely(self, index: int, turn: Floats, deep: Floats) -> NDArray[np.bool_] | bool:
         """Which rays (n,), `turn` [rad] from where the edge points to the work, it may meet in the time

@@ -167,7 +167,7 @@ def _taken(field: DepthField, motion: CutterMotion, rays: Stock, near: Contacts,
     start = _shortest_before(ray, rays.end[ray], end)
     some = np.flatnonzero(end < start - THINNEST)
     pairs = ray[some], index[order[some]]
-    return _seen(field, motion, rays, pairs, near.ends.of(order[some]), start[some])
+    return _seen(field, motion, rays, pairs, (near.ends.of(order[some]), start[some]))
 
 
 def _shortest_before(ray: Ints, standing: Floats, end: Floats) -> Floats:
@@ -184,11 +184,11 @@ def _seen(
     motion: CutterMotion,
     rays: Stock,
     pairs: tuple[Ints, Ints],
-    low: Ends,
-    start: Floats,
+    stretch: tuple[Ends, Floats],
 ) -> Removal:
     """Pieces of rays, from their ends to where they stood, as the edges see them that take them away."""
-    (ray, index), end = pairs, low.radius
+    (ray, index), (low, start) = pairs, stretch
+    end = low.radius
     high = field.evaluate(rays.points(ray, start), index)
     # the edge that has left the new surface is the one that bears the force
     _, by_s, by_rho = field.cutter.profile.depth(low.s, low.rho)

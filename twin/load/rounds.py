@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller.clock import Chunk, Feedback
-from twin.course import Course
+from twin.course import Course, Trial
 from twin.cutting.motion import CutterMotion
 from twin.job.schema import Job
 from twin.load.bench import Bench
@@ -53,16 +53,13 @@ STOPPING = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Settled:
-    """What the rounds of a window have come to."""
+class Window:
+    """What the rounds of some ticks have come to."""
 
-    chunk: Chunk
+    first_tick: int
+    ticks: int
     load: CuttingLoad
     """that acts in it"""
-    tail: CuttingLoad
-    """of metal that it has cut, on ticks behind it"""
-    stock: Stock
-    """that it leaves"""
     moved_um: tuple[float, ...]
     """by how much each round but the first moved the part's surface at most"""
     settled: bool
@@ -80,6 +77,20 @@ class Settled:
         return self.slowest < (STOPPED if self.settled else STOPPING)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _End:
+    """A window, and what is behind it."""
+
+    window: Window
+    chunk: Chunk
+    trial: Trial
+    """that went through it last"""
+    tail: CuttingLoad
+    """of metal that it has cut, on ticks behind it"""
+    stock: Stock
+    """that it leaves"""
+
+
 class Rounds:
     """A course under its own forces, as far as it has come."""
 
@@ -93,7 +104,7 @@ class Rounds:
         self.stock = self.bench.whole(slope)
         self.past: list[CuttingLoad] = []
         """what acted in each window so far, by whole ticks"""
-        self.windows: list[Settled] = []
+        self.windows: list[Window] = []
         """in which metal was cut"""
         self._acted = self._tail = self.bench.no_load
         self._most = self._cutting = ticks
@@ -109,18 +120,19 @@ class Rounds:
                 self._ticks = min(2 * self._ticks, LONGEST)
                 continue
             chunk = self._shorter(chunk, self._cutting)
-            result = self._settle(chunk)
-            while not result.settled and result.chunk.ticks > 1:
-                self._cutting = result.chunk.ticks // 2
-                result = self._settle(self._shorter(chunk, self._cutting))
-            if result.rounds <= FEW_ROUNDS and result.chunk.ticks == self._cutting:
+            end = self._settle(chunk)
+            while not end.window.settled and end.chunk.ticks > 1:
+                self._cutting = end.chunk.ticks // 2
+                end = self._settle(self._shorter(chunk, self._cutting))
+            window = end.window
+            if window.rounds <= FEW_ROUNDS and window.ticks == self._cutting:
                 self._cutting = min(2 * self._cutting, self._most)
-            self._take(result.chunk, result)
-            if len(result.load.cell):
-                self.windows.append(result)
-            idle = not len(result.load.cell) and not len(self._tail.cell)
+            self._take(end.chunk, end)
+            if len(window.load.cell):
+                self.windows.append(window)
+            idle = not len(window.load.cell) and not len(self._tail.cell)
             self._ticks = min(2 * self._ticks, LONGEST) if idle else self._cutting
-            if not result.settled or result.stalled:
+            if not window.settled or window.stalled:
                 return
 
     def _ahead(self, limit: int) -> Chunk | None:
@@ -136,12 +148,12 @@ class Rounds:
         shorter = self.course.ahead(ticks) if ticks < chunk.ticks else chunk
         return chunk if shorter is None else shorter
 
-    def _take(self, chunk: Chunk, result: Settled | None = None) -> None:
-        """Go through a window whose forces are known; without a result nothing is cut in it."""
+    def _take(self, chunk: Chunk, end: _End | None = None) -> None:
+        """Go through a window whose end is known; without one nothing is cut in it."""
         first = self.course.tick
         none = self.bench.no_load
-        load = none if result is None else result.load
-        feedback = self.course.take(chunk, self._acted.then(load) if len(load.cell) else None)
+        load = none if end is None else end.window.load
+        feedback = self.course.take(chunk, tried=None if end is None else end.trial)
         until = first + feedback.ticks
         tool = feedback.actual[:, none.spindle]
         load = replace(load.before(until), angle=(first + np.arange(len(tool)), tool))
@@ -149,18 +161,18 @@ class Rounds:
             self.past.append(load.whole())
         self._acted = self._acted.then(load)
         self._acted = self._acted.since(until - (_turn(self._acted, SLOWEST) or SLOWEST) - 2 * REACH)
-        if result is not None:
-            self._tail, self.stock = result.tail.since(until), result.stock
+        if end is not None:
+            self._tail, self.stock = end.tail.since(until), end.stock
 
     def _clear(self, chunk: Chunk) -> int:
         """Ticks at the beginning of a chunk in which nothing is cut."""
         if len(self._tail.cell):
             return 0
-        span = self._span(self.course.trial(chunk))
+        span = self._span(self.course.trial(chunk).feedback)
         tick = self.bench.first_cut(self.stock, int(chunk.tool[0]), span)
         return chunk.ticks if tick is None else max(tick - span.first - 2, 0)
 
-    def _settle(self, chunk: Chunk) -> Settled:
+    def _settle(self, chunk: Chunk) -> _End:
         """Go through a window round after round."""
         bench, tool = self.bench, int(chunk.tool[0])
         load, moved = self._guess(chunk), list[float]()
@@ -169,41 +181,39 @@ class Rounds:
         metal, search = Removal.none(), bench.search(self.stock)
         while True:
             pressed = self._acted.then(load)
-            feedback = self.course.trial(chunk, pressed if len(load.cell) else None)
-            span = self._span(feedback)
-            give = self._give(pressed, span)
+            trial = self.course.trial(chunk, pressed if len(load.cell) else None)
+            span = self._span(trial.feedback)
+            felt = pressed.on(span.tick[span.core], span.actual[span.core, load.spindle])
+            give = _give(felt, span)
             motion = bench.motion(tool, span, give)
             if before is not None:
                 moved.append(self._moved(before, motion, load.tick[load.tick < span.until]))
                 if _over(moved, chunk.ticks):
                     mine = metal.of(metal.middle_s < span.until * bench.tick_s)
-                    return Settled(
+                    lasting = mine.time_s[:, 1] > span.until * bench.tick_s
+                    slowest = _slowest(self._told(trial.feedback), load, span)
+                    return _End(
+                        window=_window(chunk, load, moved, slowest),
                         chunk=chunk,
-                        load=load,
-                        tail=bench.forces(tool, mine, before, span).load,
+                        trial=trial,
+                        tail=bench.forces(tool, mine.of(lasting), before, span).load,
                         stock=mine.taken_from(self.stock),
-                        moved_um=tuple(moved),
-                        settled=moved[-1] < SETTLED_UM,
-                        slowest=_slowest(self._told(feedback), load, span),
                     )
             metal = bench.metal(search, tool, motion, span)
             found = bench.forces(tool, metal, motion, span).and_also(self._tail)
             if not len(found.load.cell):
-                return Settled(
+                return _End(
+                    window=_window(chunk, bench.no_load, moved, 1.0),
                     chunk=chunk,
-                    load=bench.no_load,
+                    trial=self.course.trial(chunk) if len(load.cell) else trial,
                     tail=bench.no_load,
                     stock=self.stock,
-                    moved_um=(),
-                    settled=True,
-                    slowest=1.0,
                 )
             row = int(np.searchsorted(span.tick, span.first))
             ends = give[row - 1 : row + span.last - span.first]
             mean = 0.5 * (ends[:-1] + ends[1:])
             load = balanced(found.before(span.last), self._acted, mean, first=span.first)
-            tried = pressed.on(span.tick[span.core], span.actual[span.core, load.spindle])
-            load = step.towards(tried.since(span.first).before(span.last), load, span, moved)
+            load = step.towards(felt.since(span.first).before(span.last), load, span, moved)
             before = motion
 
     def _span(self, feedback: Feedback) -> Span:
@@ -215,13 +225,6 @@ class Rounds:
         """(n + 1,) setpoints of the tool, from the tick before on."""
         column = self.bench.no_load.spindle
         return np.concatenate([self.course.tape(self.course.tick - 1).setpoint, feedback.setpoint])[:, column]
-
-    def _give(self, load: CuttingLoad, span: Span) -> Floats:
-        """(m, 3) how far the mounts give way at the rows of a span [µm]; beyond it they stand still."""
-        core = span.tick[span.core]
-        known = load.on(core, span.actual[span.core, load.spindle]).deflection_um(core)
-        rows = np.searchsorted(core, np.minimum(span.tick, span.last - 2))
-        return known[np.minimum(rows, len(core) - 1)]
 
     def _moved(self, before: CutterMotion, after: CutterMotion, ticks: NDArray[np.int64]) -> float:
         """By how much the part's surface has moved at most [µm]."""
@@ -237,6 +240,25 @@ class Rounds:
         turns = round((angle[-1] - np.interp(ticks[-1] - back, ticks, angle)) / 360.0)
         later = self._acted.later(back, turns)
         return later.since(self.course.tick).before(chunk.first_tick + chunk.ticks + 2 * REACH)
+
+
+def _window(chunk: Chunk, load: CuttingLoad, moved: list[float], slowest: float) -> Window:
+    return Window(
+        first_tick=chunk.first_tick,
+        ticks=chunk.ticks,
+        load=load,
+        moved_um=tuple(moved),
+        settled=not len(load.cell) or moved[-1] < SETTLED_UM,
+        slowest=slowest,
+    )
+
+
+def _give(felt: CuttingLoad, span: Span) -> Floats:
+    """(m, 3) how far the mounts give way at the rows of a span [µm] to what is `felt` there; beyond it they
+    stand still."""
+    core = span.tick[span.core]
+    rows = np.searchsorted(core, np.minimum(span.tick, span.last - 2))
+    return felt.deflection_um(core)[np.minimum(rows, len(core) - 1)]
 
 
 def _over(moved: list[float], ticks: int) -> bool:

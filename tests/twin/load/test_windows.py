@@ -20,13 +20,18 @@ def test_a_trial_leaves_the_course_where_it_is(tmp_path):
     straight, course = polygon.begin(ideal=False), polygon.begin(ideal=False)
     straight.go()
     while (chunk := course.ahead(777)) is not None:
-        other = course.trial(chunk, lambda _first, ticks: np.full((ticks, 4), 50.0))
-        again = course.trial(chunk)
+        other = course.trial(chunk, lambda _first, ticks: np.full((ticks, 4), 50.0)).feedback
+        trial = course.trial(chunk)
+        again = trial.feedback
         taken = course.take(chunk)
         np.testing.assert_array_equal(again.actual, taken.actual)
         assert not np.array_equal(other.actual, taken.actual)
     for name in ("time", "actual", "setpoint"):
         np.testing.assert_array_equal(getattr(course.tape(), name), getattr(straight.tape(), name))
+    tried = polygon.begin(ideal=False)
+    while (chunk := tried.ahead(777)) is not None:
+        tried.take(chunk, tried=tried.trial(chunk))
+    np.testing.assert_array_equal(tried.tape().actual, straight.tape().actual)
     np.testing.assert_array_equal(course.tape(since=2000).time, straight.tape().time[2000:])
 
 
