@@ -1,5 +1,6 @@
 """Any motion, any tools: the quick way where it is proved to be right, the general way everywhere else."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -34,6 +35,10 @@ MUCH_COARSER = 2.0
 """Times the tolerance by which facets may stray before a note says so."""
 FORMED_ERROR = 0.1
 """[µm] off the envelope from which a cut is not one of strokes along gaps"""
+FORMED_ROUNDS = 2
+"""of strokes: ridges between them are off as facets are, and may ask for finer cells"""
+SAFELY = 0.8
+"""Share of FORMED_ERROR that finer cells are chosen for"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,16 +198,25 @@ def _severed(remains: Remains) -> list[str]:
 
 def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: float) -> CutResult | None:
     """The cut by strokes of wheels along whole gaps; None where it is something else, or does not hold."""
-    found: list[Strokes] = []
-    for cutter, motion in tools:
-        strokes = find_strokes(blank, cutter, motion, cell)
-        if strokes is None or strokes.vertices.largest_um > FORMED_ERROR:
-            return None
-        found.append(strokes)
+    for _ in range(FORMED_ROUNDS):
+        found: list[Strokes] = []
+        for cutter, motion in tools:
+            strokes = find_strokes(blank, cutter, motion, cell)
+            if strokes is None or strokes.vertices.largest_um > FORMED_ERROR:
+                return None
+            found.append(strokes)
+        remains = subtract(blank, *(tube for strokes in found for tube in strokes.tubes))
+        met = ridges(found, remains)
+        if met.largest_um <= FORMED_ERROR:
+            return _of_strokes(found, remains, met, cell)
+        cell *= math.sqrt(SAFELY * FORMED_ERROR / met.largest_um)
+    return None
+
+
+def _of_strokes(found: list[Strokes], remains: Remains, met: Errors, cell: float) -> CutResult:
+    """What strokes have left of the blank, with the errors of the ridges where they met."""
     tubes = [tube for strokes in found for tube in strokes.tubes]
     times = [time for strokes in found for time in strokes.times]
-    remains = subtract(blank, *tubes)
-    met = ridges(found, remains)
     return CutResult(
         remains=remains,
         method="strokes of a wheel (rays in transverse planes)",
@@ -215,7 +229,6 @@ def _formed(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], cell: 
         facet_error_um=max(strokes.facets.largest_um for strokes in found),
         notes=(
             *(note for one in found for note in coarse(one.vertices, one.facets)),
-            *coarse(met, Errors(np.zeros((0, 3)), np.zeros(0))),
             *_severed(remains),
         ),
     )

@@ -9,9 +9,11 @@ import pytest
 from twin.cutters.disc_wheel import DiscWheel
 from twin.cutting.blank import Blank
 from twin.cutting.cut import cut
+from twin.cutting.fields import tool_field
 from twin.cutting.motion import RigidTransform
 from twin.cutting.stock import blank_solid
 from twin.cutting.strokes import find_strokes
+from twin.cutting.sweep import Sweep
 from twin.grinding.precut import PrecutGear
 from twin.grinding.wheel import GapWheel
 from twin.inspection.involute import geometry
@@ -173,12 +175,13 @@ def test_between_two_strokes_stands_the_ridge_of_both_profiles(synthetic):
     np.testing.assert_allclose(r[ridge], x / math.cos(pitch / 2), atol=2e-5)
 
 
-def test_what_facets_cost_on_ridges_between_helical_strokes_is_told(synthetic):
-    """The boolean makes those ridges of facets: their vertices are off the cut as the facets are."""
-    _, found = overlapping(synthetic, 15.0, 0.8)
+def test_ridges_between_helical_strokes_stand_on_the_cut_as_well(synthetic):
+    """The boolean makes those ridges of facets: cells are made as fine as their vertices ask for."""
+    (cutter, motion), found = overlapping(synthetic, 15.0, 0.8)
     assert found.method.startswith("strokes")
-    assert 0.1 < found.largest_error_um < 1.0
-    assert any("checked points of the cut stand up to" in note for note in found.notes)
-    _, fine = overlapping(synthetic, 15.0, 0.3)
-    # errors of facets go with the square of the cell
-    assert fine.largest_error_um < 0.3 * found.largest_error_um
+    assert found.largest_error_um <= 0.1
+    field = Sweep((tool_field(cutter, motion, TIP, (-3.0, 0.0)),))
+    v = found.remains.vertices.astype(float)
+    r = np.hypot(v[:, 0], v[:, 1])
+    inside = (v[:, 2] > -2.999) & (v[:, 2] < -0.001) & (r < TIP - 1e-3) & (r > 10.1)
+    assert np.abs(field.unculled(v[inside])).max() < 1.2e-4
