@@ -84,9 +84,12 @@ class DepthField:
         low, high = off + ends.min() - slack, off + ends.max() + slack
         return float(low.min(initial=0.0)), float(high.max(initial=0.0))
 
-    def evaluate(self, points: Floats, index: Ints, *, gradient: bool = False) -> Meeting:
-        """Field of pass `index[i]` at `points[i]` (m, 3) in the part frame [mm]."""
-        return self._meeting(points, index, self.cutter.profile.depth, gradient=gradient)
+    def evaluate(
+        self, points: Floats, index: Ints, *, gradient: bool = False, near: Floats | None = None
+    ) -> Meeting:
+        """Field of pass `index[i]` at `points[i]` (m, 3) in the part frame [mm]; `near` (m,) samples about
+        when they meet, where that is known."""
+        return self._meeting(points, index, self.cutter.profile.depth, gradient=gradient, near=near)
 
     def evaluate_bite(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
         """As `evaluate`, for bites: depth in one piece of a tooth, or in the land between the teeth, alone.
@@ -109,9 +112,10 @@ class DepthField:
         outline: Callable[[Floats, Floats], tuple[Floats, Floats, Floats]],
         *,
         gradient: bool,
+        near: Floats | None = None,
     ) -> Meeting:
         """Depth in an `outline` (s, rho) of the edges of passes `index`."""
-        state, end, step = self._rake.meet(points, index)
+        state, end, step = self._rake.meet(points, index, near)
         s = state.s + state.s_rate * step
         rho = state.rho + state.rho_rate * step
         along = s - self.passes.shift.take(index)

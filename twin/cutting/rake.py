@@ -53,14 +53,17 @@ class Rake:
         self._lead = np.stack([at[1] - self.passes.angle, *self._table[cell, 5:].T])
         self._settled = _settled(cutter, self.passes)
 
-    def meet(self, points: Floats, index: Ints) -> tuple[State, Floats, Floats]:
-        """The points near their meeting instants, those instants, and the step that is left to them."""
+    def meet(self, points: Floats, index: Ints, near: Floats | None = None) -> tuple[State, Floats, Floats]:
+        """The points near their meeting instants, those instants, and the step that is left to them; `near`
+        (m,) is about when they meet, where that is known."""
         p = self.passes
         local = np.ascontiguousarray(points.T)
         if self._moved:
             local = self._mount.rotation @ local + self._mount.translation[:, None]
         first, last, angle = p.first.take(index), p.last.take(index), p.angle.take(index)
-        at = np.clip(p.at.take(index) + self._ahead(local, index), first, last)
+        if near is None:
+            near = p.at.take(index) + self._ahead(local, index)
+        at = np.clip(near, first, last)
         state = self._state(local, at, angle)
         rows = self._unsettled(state, at, first, last)
         if len(rows):

@@ -64,19 +64,14 @@ class Evenly:
             far=far,
         )
 
-    def met(self, off: Floats, turn: Floats) -> tuple[Floats, Floats]:
+    def met(self, own: Floats, turn: Floats) -> tuple[Floats, Floats]:
         """(3, n) where points meet the edge, along the tool's own axes from its centre, and (n,) how far off
-        that may be at most [mm]; `off` (3, n) from the centre, `turn` [rad] they stand about it, as the edge
-        points to the work."""
-        x, y = off[0] + self.centre[0], off[1] + self.centre[1]
-        rate = self.basis @ np.stack(
-            [
-                -self.gear * y - self.feed[0],
-                self.gear * x - self.feed[1],
-                np.full(len(turn), -self.feed[2]),
-            ]
-        )
-        own = self.basis @ off
+        that may be at most [mm]; `own` (3, n) where they stand as the edge points to the work, `turn` [rad]
+        about the tool's axis then."""
+        # the work turns about z, which goes through its own origin
+        turn_rate = self.basis @ np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+        still = turn_rate @ self.centre * self.gear - self.basis @ self.feed
+        rate = self.gear * (turn_rate @ self.basis.T) @ own + still[:, None]
         turning = (own[0] * rate[1] - own[1] * rate[0]) / (own[0] * own[0] + own[1] * own[1])
         slow = np.abs(turning) < SLOWEST
         ahead = turn / np.where(slow, 1.0 - turning, 1.0)

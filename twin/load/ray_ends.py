@@ -38,7 +38,7 @@ class Ends:
     growth: Floats
     """of the depth per radius where the ray is cut off; 0 where the edge goes through to its inner end"""
     s: Floats
-    """where the edge meets the new end: along its outline, against it [mm]"""
+    """where the edge meets the new end, or the old one that stays: along its outline, against it [mm]"""
     rho: Floats
     """and from the tool's axis [mm]"""
     instant: Floats
@@ -70,12 +70,16 @@ class Ends:
         self.s[rows], self.rho[rows], self.instant[rows] = meeting.s, meeting.rho, meeting.instant
 
 
-def cut_at(field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Floats) -> Ends:
-    """Where passes cut rays, in pairs, off that reach to the radii `high` (n,)."""
+def cut_at(
+    field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Floats, near: Floats | None = None
+) -> Ends:
+    """Where passes cut rays, in pairs, off that reach to the radii `high` (n,); `near` (n,) samples about
+    when edges come there, where that is known."""
     out = Ends.unknown(len(high))
     ray, index = pairs
-    meeting = field.evaluate(rays.points(ray, high), index)
+    meeting = field.evaluate(rays.points(ray, high), index, near=near)
     out.depth[:] = meeting.depth
+    out.meet(np.arange(len(high)), meeting)
     cut = np.flatnonzero(meeting.depth > 0)
     ray, index, high, above = ray[cut], index[cut], high[cut], meeting.depth[cut]
     low = high - 2.0 * (field.cutter.radius - meeting.rho[cut]) - SLACK
@@ -89,7 +93,11 @@ def cut_at(field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Float
         low[inside] -= high[inside] - low[inside]
     through = below >= 0  # the edge comes from below, or through to the bore
     ends, gone = np.flatnonzero(~through), np.flatnonzero(through)
-    some = (ray[ends], index[ends]), (low[ends], below[ends]), (high[ends], above[ends])
+    some = (
+        (ray[ends], index[ends]),
+        (low[ends], below[ends]),
+        (high[ends], above[ends], meeting.instant[cut[ends]]),
+    )
     out.put(cut[ends], _zero(field, rays, *some))
     inner = rays.inner[ray[gone]]
     out.radius[cut[gone]] = inner
@@ -105,9 +113,11 @@ def followed(field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Flo
     rows = np.flatnonzero(np.isfinite(known.radius) & (known.growth > 0.0))
     found = np.zeros(len(ray), dtype=bool)
     at, growth = known.radius.copy(), known.growth.copy()
-    before, depth_before = at.copy(), np.zeros(len(ray))
+    before, depth_before, instant = at.copy(), np.zeros(len(ray)), known.instant.copy()
     for _ in range(FEW_STEPS):
-        meeting = field.evaluate(rays.points(ray[rows], at[rows]), index[rows])
+        points = rays.points(ray[rows], at[rows])
+        meeting = field.evaluate(points, index[rows], near=instant[rows])
+        instant[rows] = meeting.instant
         growth[rows] = _growth(at[rows] - before[rows], meeting.depth - depth_before[rows], growth[rows])
         close = np.abs(meeting.depth) < CLOSE
         done, rows, left = rows[close], rows[~close], meeting.depth[~close]
@@ -119,7 +129,7 @@ def followed(field: DepthField, rays: Stock, pairs: tuple[Ints, Ints], high: Flo
         at[rows] = np.maximum(at[rows] - left / growth[rows], rays.inner[ray[rows]])
     out.radius[found], out.growth[found], out.depth[found] = at[found], growth[found], known.depth[found]
     lost = np.flatnonzero(~found)
-    out.put(lost, cut_at(field, rays, (ray[lost], index[lost]), high[lost]))
+    out.put(lost, cut_at(field, rays, (ray[lost], index[lost]), high[lost], instant[lost]))
     return out
 
 
@@ -128,25 +138,24 @@ def _zero(
     rays: Stock,
     pairs: tuple[Ints, Ints],
     outside: tuple[Floats, Floats],
-    inside: tuple[Floats, Floats],
+    inside: tuple[Floats, Floats, Floats],
 ) -> Ends:
     """Between radii, (n,) each with their depths below and above 0, where the depth is zero.
 
-    Secants between the last two, which start from inside: depth grows no faster than the way along the ray,
-    so nothing is passed over. A secant that leaves the bounds gives way to false position between them.
+    Secants between the last two, which start from `inside`, where it is known when edges come: depth grows no
+    faster than the way along the ray, so nothing is passed over. A secant that leaves the bounds gives way to
+    false position between them.
     """
-    (low, below), (high, above) = (
-        tuple(value.copy() for value in outside),
-        tuple(value.copy() for value in inside),
-    )
+    (low, below), (high, above, instant) = (tuple(v.copy() for v in values) for values in (outside, inside))
     before, depth_before = high.copy(), above.copy()
     at = np.maximum(high - above / math.hypot(1.0, rays.slope), low)
     out = Ends.unknown(len(at))
     out.depth[:] = above
     rows = np.arange(len(at))
     for step in range(STEPS):
-        meeting = field.evaluate(rays.points(pairs[0][rows], at[rows]), pairs[1][rows])
-        depth = meeting.depth
+        points = rays.points(pairs[0][rows], at[rows])
+        meeting = field.evaluate(points, pairs[1][rows], near=instant[rows])
+        depth, instant[rows] = meeting.depth, meeting.instant
         out.meet(rows, meeting)
         change = depth - depth_before[rows]
         out.growth[rows] = _growth(at[rows] - before[rows], change, np.ones(len(rows)))

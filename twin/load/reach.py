@@ -95,24 +95,21 @@ class Reach:
         """Pairs of rays and passes whose edges come to the rays' ends or further in, in that time."""
         field, motion, stock, p = self._field, self._motion, self._stock, self._field.passes
         standing = self._facing(passes)
-        x, y, z = motion.mount.moved(stock.points(standing, stock.end[standing])).T
-        towards, across, axis = motion.basis
+        points = np.ascontiguousarray(motion.mount.moved(stock.points(standing, stock.end[standing])).T)
         radius, profile = field.cutter.radius, field.cutter.profile
         rays: list[Ints] = [np.zeros(0, np.int64)]
         for index in passes:
             cos, sin = math.cos(self._work[index]), math.sin(self._work[index])
-            middle = self._centre[index]
-            off_x, off_y, off_z = x * cos - y * sin - middle[0], x * sin + y * cos - middle[1], z - middle[2]
-            a = off_x * towards[0] + off_y * towards[1] + off_z * towards[2]
-            b = off_x * across[0] + off_y * across[1] + off_z * across[2]
-            near = np.flatnonzero(a * a + b * b < (radius + p.travel[index] + SLACK) ** 2)
-            rho, turn = np.hypot(a[near], b[near]), np.arctan2(b[near], a[near])
-            s = off_x[near] * axis[0] + off_y[near] * axis[1] + off_z[near] * axis[2]
+            turned = motion.basis @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+            own = turned @ points - (motion.basis @ self._centre[index])[:, None]
+            near = np.flatnonzero(own[0] ** 2 + own[1] ** 2 < (radius + p.travel[index] + SLACK) ** 2)
+            own = own.take(near, axis=1)
+            rho, turn, s = np.hypot(own[0], own[1]), np.arctan2(own[1], own[0]), own[2]
             # the sooner or later the edge comes, the further the stock has gone on
             later = (np.abs(turn) + self._along) / (REACH + self._along)
             way = p.travel[index] * np.minimum(later, 1.0)
             if (evenly := self._evenly(index)) is not None:
-                met, bound = evenly.met(np.stack([off_x[near], off_y[near], off_z[near]]), turn)
+                met, bound = evenly.met(own, turn)
                 known = bound < way
                 rho, s = np.where(known, np.hypot(met[0], met[1]), rho), np.where(known, met[2], s)
                 way = np.minimum(bound, way)

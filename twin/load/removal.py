@@ -148,8 +148,8 @@ def looked_for_again(
     motion: CutterMotion,
     between: tuple[float, float] = ALWAYS,
 ) -> tuple[Removal, Contacts] | None:
-    """The same as `looked_for` on a motion within CLOSE_BY of the one that contacts are `known` from; None
-    where it has not their passes."""
+    """The same as `looked_for` on a motion within CLOSE_BY of the one that contacts were looked for on; None
+    where it has not the passes of those that are `known`."""
     index = known.passes_of(field)
     if index is None:
         return None
@@ -189,7 +189,7 @@ def _seen(
     """Pieces of rays, from their ends to where they stood, as the edges see them that take them away."""
     (ray, index), (low, start) = pairs, stretch
     end = low.radius
-    high = field.evaluate(rays.points(ray, start), index)
+    high = field.evaluate(rays.points(ray, start), index, near=low.instant)
     # the edge that has left the new surface is the one that bears the force
     _, by_s, by_rho = field.cutter.profile.depth(low.s, low.rho)
     middle = 0.5 * (low.instant + high.instant)

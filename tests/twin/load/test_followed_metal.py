@@ -87,9 +87,8 @@ def test_points_meet_edges_where_it_is_foretold_within_the_bound(hobbing, um):
     place = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), rng.uniform(-3.0, 0.0, 400)])
     cos, sin = np.cos(-work), np.sin(-work)
     part = place @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    off = (place - evenly.centre).T
-    a, b, _ = motion.basis @ off
-    met, bound = evenly.met(off, np.arctan2(b, a))
+    own = motion.basis @ (place - evenly.centre).T
+    met, bound = evenly.met(own, np.arctan2(own[1], own[0]))
     wanted = field.evaluate(part, np.full(400, number))
     s, rho = met[2] - field.passes.shift[number], np.hypot(met[0], met[1])
     assert np.isfinite(bound).mean() > 0.9
