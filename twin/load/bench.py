@@ -15,7 +15,7 @@ from twin.load.removal import Removal, pieces
 from twin.load.search import Search
 from twin.load.span import Span, span_of
 from twin.load.stiffness import stiffness_of
-from twin.load.stock import Stock
+from twin.load.stock import Lean, Stock
 from twin.load.timeline import no_load
 from twin.session import tool_in_place
 from twin.setup import Ready
@@ -39,11 +39,11 @@ class Bench:
         )
         self._physics, self._ready = job.physics, ready
 
-    def whole(self, slope: float) -> Stock:
-        """The blank before anything is cut, as rays that rise by `slope`. Raises InputError for a resolution
+    def whole(self, lean: Lean) -> Stock:
+        """The blank before anything is cut, as rays that `lean`. Raises InputError for a resolution
         beyond the memory."""
         cutters = [tool.cutter for tool in self._ready.tools]
-        return Stock.of(self.blank, cutters, self._physics.load_resolution_mm, slope=slope)
+        return Stock.of(self.blank, cutters, self._physics.load_resolution_mm, lean=lean)
 
     def span(self, before: tuple[NDArray[np.int64], Floats], feedback: Feedback, first: int) -> Span:
         """Ticks from `first` on as the machine has gone through them, after the rows `before`."""

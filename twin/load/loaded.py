@@ -16,7 +16,7 @@ from twin.load.material import Material
 from twin.load.rounds import TICKS, Rounds, Window
 from twin.load.stiffness import Stiffness
 from twin.load.timeline import CuttingLoad, joined
-from twin.load.walls import slope_of
+from twin.load.walls import lean_of
 from twin.session import Session, session_of
 from twin.setup import Ready
 
@@ -98,8 +98,8 @@ def run_under_load(
     """
     tell("under its cutting forces, some ticks after the other")
     foreseen.go()
-    slope = slope_of(job.work.blank(), session_of(foreseen, ready).motions)
-    rounds = Rounds(job, ready, course, slope=slope, ticks=ticks)
+    lean = lean_of(job.work.blank(), session_of(foreseen, ready).motions)
+    rounds = Rounds(job, ready, course, lean=lean, ticks=ticks)
     rounds.go()
     load = joined(rounds.past) if rounds.past else rounds.bench.no_load.whole()
     session = session_of(course, ready, load if len(load.cell) else None)

@@ -1,6 +1,5 @@
 """Where a pass cuts a ray of the stock off: where its depth along the ray is zero."""
 
-import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -148,7 +147,7 @@ def _zero(
     """
     (low, below), (high, above, instant) = (tuple(v.copy() for v in values) for values in (outside, inside))
     before, depth_before = high.copy(), above.copy()
-    at = np.maximum(high - above / math.hypot(1.0, rays.slope), low)
+    at = np.maximum(high - above / np.hypot(1.0, rays.slope[pairs[0]]), low)
     out = Ends.unknown(len(at))
     out.depth[:] = above
     rows = np.arange(len(at))

@@ -198,13 +198,13 @@ def _seen(
     ends = np.stack([low.instant, high.instant])
     ends = at_samples(motion, motion.time_s, ends.reshape(-1)).reshape(ends.shape)
     around = speed[:, 1] * place[:, 0] - speed[:, 0] * place[:, 1]
-    across = np.abs(speed[:, 2]) * rays.rise + np.abs(around) * rays.turn
+    across = np.abs(speed[:, 2]) * rays.rise[ray] + np.abs(around) * rays.turn
     half = 0.5 * across / np.maximum((speed * speed).sum(axis=1), 1e-12)
     return Removal(
         index=index,
         ray=ray,
         end_mm=end,
-        volume_mm3=0.5 * (start * start - end * end) * rays.turn * rays.rise,
+        volume_mm3=0.5 * (start * start - end * end) * rays.turn * rays.rise[ray],
         thickness_mm=np.maximum(by_s * (high.s - low.s) + by_rho * (high.rho - low.rho), THINNEST),
         time_s=np.column_stack([ends.min(axis=0) - half, ends.max(axis=0) + half]),
         place_mm=place,

@@ -23,7 +23,7 @@ from twin.load.mounts import balanced
 from twin.load.relaxation import Relaxation
 from twin.load.removal import Removal
 from twin.load.span import Span
-from twin.load.stock import Stock
+from twin.load.stock import Lean, Stock
 from twin.load.timeline import CuttingLoad
 from twin.machine.pressing import REACH
 from twin.session import ticks_of
@@ -95,13 +95,13 @@ class Rounds:
     """A course under its own forces, as far as it has come."""
 
     def __init__(
-        self, job: Job, ready: Ready, course: Course, *, slope: float = 0.0, ticks: int = TICKS
+        self, job: Job, ready: Ready, course: Course, *, lean: Lean | None = None, ticks: int = TICKS
     ) -> None:
-        """`slope` of the stock's rays, `ticks` of a window in which metal is cut. Raises InputError for a
+        """`lean` of the stock's rays, `ticks` of a window in which metal is cut. Raises InputError for a
         material without figures."""
         self.bench = Bench(job, ready)
         self.course = course
-        self.stock = self.bench.whole(slope)
+        self.stock = self.bench.whole(lean or Lean())
         self.past: list[CuttingLoad] = []
         """what acted in each window so far, by whole ticks"""
         self.windows: list[Window] = []

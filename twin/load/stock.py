@@ -28,6 +28,27 @@ RAYS = 60_000
 """that a count has at most where the job names no resolution; it may have ten times as many"""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lean:
+    """Which way rays are inclined: the same everywhere, or off a height to either side of it."""
+
+    slope: float = 0.0
+    """rise along z per radius"""
+    split: float | None = None
+    """height [mm] below which they rise by 1, and above which by −1, each up to it; None = none"""
+
+    def parts(self, low: float, high: float) -> list[tuple[float, float, float]]:
+        """(lowest, highest, slope) of a blank between two heights [mm]."""
+        if self.split is None:
+            return [(low, high, self.slope)]
+        return [(low, self.split, 1.0), (self.split, high, -1.0)]
+
+    @property
+    def inclined(self) -> bool:
+        """Whether any of them are."""
+        return self.split is not None or self.slope != 0.0
+
+
 @dataclass(slots=True)
 class Stock:
     """What stands of the blank: rays at angles and heights of the part frame, angle by angle.
@@ -40,8 +61,8 @@ class Stock:
     sin: Floats
     z: Floats
     """(m,) where the ray's line meets the work axis [mm]"""
-    slope: float
-    """by which it rises along z per radius"""
+    slope: Floats
+    """(m,) by which it rises along z per radius"""
     inner: Floats
     """(m,) radius at which the metal begins [mm]"""
     end: Floats
@@ -50,8 +71,8 @@ class Stock:
     """that any metal of the blank stands from the origin [mm]"""
     turn: float
     """angle between neighbours [rad]"""
-    rise: float
-    """height between neighbours [mm]"""
+    rise: Floats
+    """(m,) height between neighbours [mm]"""
     step: float
     """distance of the rays on the blank's surface, as asked for [mm]"""
 
@@ -62,21 +83,30 @@ class Stock:
         cutters: Iterable[Cutter],
         resolution_mm: float | None = None,
         *,
-        slope: float = 0.0,
+        lean: Lean | None = None,
     ) -> "Stock":
-        """A whole blank; `resolution_mm` is the distance of the rays on its surface, `slope` their rise.
+        """A whole blank; `resolution_mm` is the distance of the rays on its surface, straight unless they
+        `lean`.
 
         Raises InputError for a resolution that would need too much memory or time.
         """
-        low, high = blank.z_range
-        lowest = low - max(slope, 0.0) * blank.radius
-        highest = high + max(-slope, 0.0) * blank.radius
-        per_pitch = INCLINED_PER_PITCH if slope else RAYS_PER_PITCH
-        step = _step(blank, highest - lowest, cutters, per_pitch, resolution_mm)
+        lean = lean or Lean()
+        parts = [
+            (low, high, low - max(slope, 0.0) * blank.radius, high + max(-slope, 0.0) * blank.radius, slope)
+            for low, high, slope in lean.parts(*blank.z_range)
+        ]
+        height = sum(highest - lowest for _, _, lowest, highest, _ in parts)
+        per_pitch = INCLINED_PER_PITCH if lean.inclined else RAYS_PER_PITCH
+        step = _step(blank, height, cutters, per_pitch, resolution_mm)
         around = math.ceil(2.0 * math.pi * blank.radius / step)
-        along = math.ceil((highest - lowest) / step)
-        z = lowest + (highest - lowest) * (np.arange(along) + 0.5) / along
-        z, inner, end = _stretches(blank.outline(), z, slope)
+        rows: list[tuple[Floats, Floats, Floats, Floats, Floats]] = []
+        for low, high, lowest, highest, slope in parts:
+            along = math.ceil((highest - lowest) / step)
+            rise = (highest - lowest) / along
+            lines = np.asarray(lowest + rise * (np.arange(along) + 0.5), dtype=np.float64)
+            found = _stretches(_between(blank.outline(), low, high), lines, slope)
+            rows.append((*found, np.full(len(found[0]), slope), np.full(len(found[0]), rise)))
+        z, inner, end, slopes, rises = (np.concatenate(column) for column in zip(*rows, strict=True))
         # each row a little further about the axis: else all gaps of a gear may be seen at the same few places
         aside = GOLDEN * np.arange(len(z)) % 1.0
         angle = 2.0 * math.pi * (np.arange(around)[:, None] + aside).reshape(-1) / around
@@ -84,12 +114,12 @@ class Stock:
             cos=np.cos(angle),
             sin=np.sin(angle),
             z=np.tile(z, around),
-            slope=slope,
+            slope=np.tile(slopes, around),
             inner=np.tile(inner, around),
             end=np.tile(end, around),
             farthest=math.hypot(blank.radius, blank.length_mm),
             turn=2.0 * math.pi / around,
-            rise=(highest - lowest) / along,
+            rise=np.tile(rises, around),
             step=step,
         )
 
@@ -100,7 +130,7 @@ class Stock:
     def points(self, ray: Ints, radius: Floats) -> Floats:
         """(n, 3) at some radii of rays (n,)."""
         return np.column_stack(
-            [radius * self.cos[ray], radius * self.sin[ray], self.z[ray] + self.slope * radius]
+            [radius * self.cos[ray], radius * self.sin[ray], self.z[ray] + self.slope[ray] * radius]
         )
 
 
@@ -117,6 +147,21 @@ def _stretches(outline: Floats, z: Floats, slope: float) -> tuple[Floats, Floats
     order = np.lexsort((radius, line))
     pairs = radius[order].reshape(-1, 2)
     return z[line[order][::2]], pairs[:, 0], pairs[:, 1]
+
+
+def _between(outline: Floats, low: float, high: float) -> Floats:
+    """(k, 2) what of a closed outline (n, 2) of (r, z) lies between two heights, closed along them."""
+    for height, keep in ((low, 1.0), (high, -1.0)):
+        over = keep * (outline[:, 1] - height)
+        points: list[Floats] = []
+        for k in range(len(outline)):
+            begin, end = float(over[k - 1]), float(over[k])
+            if begin * end < 0.0:
+                points.append(outline[k - 1] + begin / (begin - end) * (outline[k] - outline[k - 1]))
+            if end >= 0.0:
+                points.append(outline[k])
+        outline = np.array(points)
+    return outline
 
 
 def _step(

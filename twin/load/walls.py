@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.motion import CutterMotion
+from twin.load.stock import Lean
 
 Floats = NDArray[np.float64]
 
@@ -25,9 +26,10 @@ HANGS = 2.0 * STEP
 """[mm] of metal over a ray of slope 1 that counts as a wall"""
 
 
-def slope_of(blank: Blank, motions: Sequence[tuple[Cutter, CutterMotion]]) -> float:
-    """Rise along z per radius of the rays for a blank that tools go through, one after the other: 1 where
-    walls face +z alone, −1 where they face −z alone, else 0.
+def lean_of(blank: Blank, motions: Sequence[tuple[Cutter, CutterMotion]]) -> Lean:
+    """Of the rays for a blank that tools go through, one after the other: by 1 along z per radius where walls
+    face +z alone, by −1 where they face −z alone, and to either side of where metal is met first, where those
+    below it face +z and those above it −z. Else straight.
 
     Asked of the whole space that each tool turns in, and of every moment, for a wall may go again.
     """
@@ -35,7 +37,8 @@ def slope_of(blank: Blank, motions: Sequence[tuple[Cutter, CutterMotion]]) -> fl
     z = np.linspace(low, high, max(math.ceil((high - low) / STEP), 2) + 1)
     metal = blank.outer_radius(z)
     floor = metal.copy()
-    above = below = False
+    above = below = crossed = False
+    first: int | None = None
     for cutter, motion in motions:
         for x, middle in _places(cutter, motion, blank):
             reach = x - _outline(cutter, motion.basis[2], z - middle)
@@ -43,9 +46,16 @@ def slope_of(blank: Blank, motions: Sequence[tuple[Cutter, CutterMotion]]) -> fl
                 continue
             floor = np.minimum(floor, reach)
             cut = floor < metal
+            if first is None:
+                first = int(np.flatnonzero(cut).mean())
             above = above or _stands(floor, z, cut)
             below = below or _stands(floor[::-1], -z[::-1], cut[::-1])
-    return float(below) - float(above)
+            lower, upper = slice(first + 1), slice(first, None)
+            crossed = crossed or _stands(floor[lower], z[lower], cut[lower])
+            crossed = crossed or _stands(floor[upper][::-1], -z[upper][::-1], cut[upper][::-1])
+    if not (above and below) or crossed or first is None or not low < z[first] < high:
+        return Lean(slope=float(below) - float(above))
+    return Lean(split=float(z[first]))
 
 
 def _outline(cutter: Cutter, axis: Floats, off: Floats) -> Floats:

@@ -12,7 +12,7 @@ from twin.load.contacts import CLOSE_BY, NEAR
 from twin.load.evenly import Evenly
 from twin.load.ray_ends import CLOSE, SLACK
 from twin.load.removal import looked_for, looked_for_again
-from twin.load.stock import Stock
+from twin.load.stock import Lean, Stock
 
 BLANK = Blank(diameter_mm=28.0, length_mm=3.0)
 
@@ -36,7 +36,7 @@ def moved(motion, um):
 def test_metal_that_is_followed_is_the_metal_that_is_looked_for(hobbing, slope, um):
     """Ray by ray and pass by pass, though no ray is looked at that did not meet an edge nearly before."""
     cutter, motion = hobbing
-    stock = Stock.of(BLANK, [cutter], 0.4, slope=slope)
+    stock = Stock.of(BLANK, [cutter], 0.4, lean=Lean(slope=slope))
     fields = [DepthField(cutter, m, BLANK.radius, BLANK.z_range) for m in (motion, moved(motion, um))]
     _, known = looked_for(stock, fields[0], motion)
     wanted, _ = looked_for(stock, fields[1], moved(motion, um))
