@@ -46,7 +46,7 @@ class LoadedRun:
     settled: bool
     """whether forces and motion belong together up to the end"""
     frequency_hz: float | None
-    """that an unstable cut trembles with; None where there is none"""
+    """that an unstable cut trembles with; None where there is none, or it has just begun"""
     stalled: bool
     """whether the tool has come to rest in the metal"""
     torque_limit: float
@@ -131,13 +131,14 @@ def run_under_load(
     return replace(run, session=replace(session, alarms=(*session.alarms, alarm)))
 
 
-def _frequency(run: LoadedRun) -> float:
-    """That the mounts tremble with most, in the last moments [Hz]."""
+def _frequency(run: LoadedRun) -> float | None:
+    """That the mounts tremble with most, in the last moments of the cut [Hz]; None of a single tick."""
     recording = run.session.recording
     ticks = np.rint(recording.time_s / run.tick_s).astype(np.int64) - 1
-    heard = recording.time_s > recording.time_s[-1] - HEARD_S
+    recent = run.load.tick[run.load.tick > ticks[-1] - round(HEARD_S / run.tick_s)]
+    heard = ticks >= min(recent, default=ticks[-1])
     give = run.load.deflection_um(ticks[heard])
-    return dominant_hz(give - give.mean(axis=0), ticks[heard], run.tick_s)
+    return dominant_hz(give - give.mean(axis=0), ticks[heard], run.tick_s) or None
 
 
 def _asked(run: LoadedRun, last: Window) -> float:
@@ -170,10 +171,11 @@ def _stalled(run: LoadedRun, last: Window) -> Alarm:
 
 def _unstable(run: LoadedRun, last: Window) -> Alarm:
     rounds = ", ".join(f"{one:.3g}" for one in last.moved_um)
+    trembles = f"most at {run.frequency_hz:.4g} Hz" if run.frequency_hz else "in the first tick of a cut"
     return Alarm(
         number="HT9040",
         found=f"at {run.session.recording.time_s[-1]:.3f} s the part's surface still moves by "
-        f"{last.moved_um[-1]:.3g} µm in round {last.rounds} of a single tick (by round: {rounds} µm), most "
-        f"at {run.frequency_hz:.4g} Hz, with {_asked(run, last):.3g} N m on the tool",
+        f"{last.moved_um[-1]:.3g} µm in round {last.rounds} of a single tick (by round: {rounds} µm), "
+        f"{trembles}, with {_asked(run, last):.3g} N m on the tool",
         span=_place(run.session),
     )

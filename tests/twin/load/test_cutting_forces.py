@@ -210,7 +210,9 @@ def test_rounds_that_do_not_settle_are_a_finding_with_a_frequency(tmp_path):
     assert not loaded.settled
     assert loaded.rounds == MOST_ROUNDS
     assert loaded.moved_um[-1] > SETTLED_UM
+    # of the cut itself, not of the silence before it
     assert loaded.frequency_hz
+    assert loaded.frequency_hz > 0.9 / (1e-3 * (loaded.load.tick[-1] - loaded.load.tick[0] + 1))
     (alarm,) = loaded.session.alarms
     assert alarm.number == "HT9040"
     assert "Hz" in alarm.found
