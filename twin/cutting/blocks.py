@@ -1,7 +1,7 @@
 """Blocks of a grid, and the bites that come to each before all of it is gone."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ COARSEST = 16
 TOUCHED = 4
 """of the blocks in which bites get their tangents"""
 FINEST = 2
+ROUNDED = 4e-6
+"""[mm] that single precision may change of a tangent within a block, for one of depth: 30 roundings"""
 BEYOND = 1.5
 """times their radius within which these tangents are proved: who leaves a block asks them still"""
 
@@ -93,7 +95,7 @@ class Blocks:
         for where in points:
             way = where[some] - t.middle[block]
             upper = level.copy()
-            for slope, off in zip((x, y, z), way.T, strict=True):
+            for slope, off in zip((x, y, z), way.T.astype(level.dtype), strict=True):
                 upper += slope * off.take(owner)
             out = np.einsum("nx,nx->n", way, way) > (t.radius[block] * (1.0 + ROUNDING)) ** 2
             if out.any():
@@ -132,7 +134,7 @@ def _finest(sweep: Sweep, grid: Grid, low: Ints, tangents: Tangents) -> tuple[In
             return _moved(sweep, above.of(parent[part]), middle[part], radius[part])
 
         parts = in_parallel(work, batches(starts, LISTED))
-        tangents = joined([without_bites(np.zeros((0, 3))), *parts])
+        tangents = _all(parts)
         some = np.flatnonzero(np.diff(tangents.lists.start))
         low, tangents = low[some], tangents.of(some)
     return low, tangents
@@ -158,6 +160,19 @@ def _moved(sweep: Sweep, above: Tangents, middle: Floats, radius: Floats) -> Tan
     keep &= bites <= gone.take(owner)
     left = above.radius - np.linalg.norm(way, axis=1)
     return Tangents(above.lists.where(keep), middle, left, plane[:, keep], above.over[keep])
+
+
+def _all(parts: list[Tangents]) -> Tangents:
+    return joined(parts) if parts else without_bites(np.zeros((0, 3)))
+
+
+def _single(tangents: Tangents) -> Tangents:
+    """The same in single precision: half the memory, and bounds by what rounding can take off them."""
+    return replace(
+        tangents,
+        plane=tangents.plane.astype(np.float32),
+        over=(tangents.over + ROUNDED * (1.0 + np.abs(tangents.plane[0]))).astype(np.float32),
+    )
 
 
 def _balls(grid: Grid, low: Ints, size: int) -> tuple[Floats, Floats]:
@@ -191,6 +206,6 @@ def _tangents(sweep: Sweep, middle: Floats, radius: Floats, lists: Candidates) -
         meeting = sweep.evaluate(middle[owner], own.bites, gradient=True)
         _, over = sweep.bound(meeting, own.bites, BEYOND * radius[owner])
         plane = np.vstack([meeting.depth, meeting.gradient.T])
-        return Tangents(own, middle[part], BEYOND * radius[part], plane, over)
+        return _single(Tangents(own, middle[part], BEYOND * radius[part], plane, over))
 
-    return joined([without_bites(np.zeros((0, 3))), *in_parallel(work, batches(lists.start, LISTED))])
+    return _all(in_parallel(work, batches(lists.start, LISTED)))

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 AROUND = 1
-TOGETHER = 1 << 18
+TOGETHER = 1 << 16
 """cells at a time"""
 
 
