@@ -16,8 +16,10 @@ from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.blocks import Blocks
 from twin.cutting.cells import Cells, points
+from twin.cutting.engaged import Edges, Engaged, engaged
+from twin.cutting.field import DepthField
 from twin.cutting.fields import tool_field
-from twin.cutting.meeting import Meeting
+from twin.cutting.metal import Metal
 from twin.cutting.motion import CutterMotion
 from twin.cutting.owners import owned
 from twin.cutting.sweep import Sweep
@@ -27,6 +29,8 @@ from twin.errors import InputError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Progress = Callable[[str, float], None]
+_Widths = tuple[int, Engaged]
+"""Number of the tool, and how much of its edges stands in metal"""
 
 PLACES = 8_000_000
 """Cells that a run has where no resolution is asked for; it may have eight times as many."""
@@ -36,6 +40,8 @@ AROUND = 1.5
 """Width of the cells of a hobbed part around, for one across"""
 LONG = 3.0
 """and along the axis: a hob's chips are as long as it is wide"""
+WIDE = 2.5
+"""Distance of places at which edges are asked, for one across"""
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 
 
@@ -43,8 +49,7 @@ SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 class Chips:
     """One row for each tooth that took something away as it passed, in the order of time.
 
-    Twice the resolution changes volume and thickness by less than 2 % where a chip has more than a hundredth
-    of the mean volume (docs/kernel.md); the smallest have a few cells, or none.
+    What twice the resolution changes of them stands in docs/kernel.md.
     """
 
     time_s: Floats
@@ -62,7 +67,7 @@ class Chips:
     thickness_mean_mm: Floats
     """(n,) twice the material's mean height above the edge: of a chip of even thickness, its thickness"""
     width_mm: Floats
-    """(n,) length of the edge that took something"""
+    """(n,) the most of its edge that stood in metal at one instant; 0 of wheels, which have none"""
     resolution_mm: float
     """size of the cells across"""
 
@@ -88,35 +93,31 @@ class _Shares:
     largest: Floats
     """(n,) of it, then the highest that is near; 0 where that was not looked for [mm]"""
     instant: Floats
-    foot: Floats
-    """(n, 2) where on the edge (s, rho) the middle lies [mm]"""
-    slope: Floats
-    """(n,) way along the edge for each square of a lattice over (s, rho) that it crosses, in its sides"""
 
-    def together(self, side: float) -> tuple["_Shares", Ints]:
-        """Those of the same bite whose feet lie in the same square of that side as one; and which of each is
-        the highest."""
-        square = np.floor(self.foot / side)
-        order = np.lexsort((-self.largest, square[:, 1], square[:, 0], self.bite))
-        row = np.column_stack([self.bite, square])[order]
-        first = np.flatnonzero(np.append(True, (row[1:] != row[:-1]).any(axis=1))[: len(row)])
+    def together(self, block: Ints) -> tuple["_Shares", Ints]:
+        """Those of the same bite in the same of the blocks (n,) as one; and which of each is the highest."""
+        key = self.bite * (int(block.max(initial=0)) + 2) + block
+        order = np.argsort(key)
+        first = np.flatnonzero(np.diff(key[order], prepend=-2))
         if not len(first):
             return self, first
+        group = np.cumsum(np.diff(key[order], prepend=-2) != 0) - 1
+        largest = np.maximum.reduceat(self.largest[order], first)
+        top = np.zeros(len(first), dtype=np.int64)
+        highest = self.largest[order] == largest[group]
+        top[group[highest]] = order[highest]
         volume = np.add.reduceat(self.volume[order], first)
-        top = order[first]
         one = _Shares(
             self.bite[top],
             volume,
             np.add.reduceat((self.volume * self.height)[order], first) / volume,
-            self.largest[top],
+            largest,
             np.minimum.reduceat(self.instant[order], first),
-            self.foot[top],
-            self.slope[top],
         )
         return one, top
 
 
-_NONE = _Shares(np.zeros(0, dtype=np.int64), *np.zeros((4, 0)), foot=np.zeros((0, 2)), slope=np.zeros(0))
+_NONE = _Shares(np.zeros(0, dtype=np.int64), *np.zeros((4, 0)))
 
 
 def chips(
@@ -137,13 +138,19 @@ def chips(
     around, along = _wide(tools)
     cells = Cells.of(blank, step, around=step * around, along=step * along)
     shares: list[_Shares] = []
+    widths: list[_Widths] = []
+    edges = [Edges(field) if isinstance(field, DepthField) else None for field in sweep.fields]
+    known = np.zeros(sweep.count)
     slabs = list(cells.slabs()) if sweep.passes else []
     for number, low in enumerate(slabs):
         progress("chips", number / len(slabs))
         blocks = Blocks.of(sweep, cells.grid, low)
-        shares.append(_shares(sweep, blank, cells, blocks, 2.0 * step))
+        one, width = _slab(sweep, blank, cells, (blocks, edges), known)
+        shares.append(one)
+        widths += width
+        np.maximum.at(known, one.bite, one.largest)
     progress("chips", 1.0)
-    return _summed(sweep, tools, shares, step)
+    return _summed(sweep, tools, shares, widths, step)
 
 
 def _step(blank: Blank, tools: tuple[tuple[Cutter, CutterMotion], ...], resolution: float | None) -> float:
@@ -168,9 +175,16 @@ def _wide(tools: tuple[tuple[Cutter, CutterMotion], ...]) -> tuple[float, float]
     return (AROUND, LONG) if all(math.isfinite(cutter.profile.pitch) for cutter, _ in tools) else (1.0, 1.0)
 
 
-def _shares(sweep: Sweep, blank: Blank, cells: Cells, blocks: Blocks, side: float) -> _Shares:
-    """What each bite was the first to remove of a slab, by the squares of its edge."""
+def _slab(
+    sweep: Sweep, blank: Blank, cells: Cells, of: tuple[Blocks, list[Edges | None]], known: Floats
+) -> tuple[_Shares, list[_Widths]]:
+    """What each bite was the first to remove of a slab, block by block, and how much of its edge did.
+
+    `known` (bites,) is how thick its chip is at least.
+    """
+    blocks, edges = of
     found, tops = [_NONE], [np.zeros((0, 3))]
+    feet = [[(_NONE.bite, _NONE.volume, _NONE.volume)] for _ in edges]
     for part in owned(sweep, cells, blocks):
         own = part if blank.section is None else part.within(blank.section)
         at = np.stack([own.at(share) for share in (0.0, 0.5, 1.0)], axis=1)
@@ -178,17 +192,30 @@ def _shares(sweep: Sweep, blank: Blank, cells: Cells, blocks: Blocks, side: floa
         height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
         best = height.argmax(axis=1)
         each = np.arange(len(best))
-        foot, slope = _foot(sweep, met[1], own.bite)
-        shares = _Shares(
-            own.bite, own.volume, height @ SIMPSON, height[each, best], met[1].instant, foot, slope
-        )
-        together, top = shares.together(side)
+        shares = _Shares(own.bite, own.volume, height @ SIMPSON, height[each, best], met[1].instant)
+        stretch, number = stretch_of(sweep, own.bite)
+        for tool, one in enumerate(edges):
+            if one is not None:
+                rows = np.flatnonzero(stretch == tool)
+                middle = met[1].of(rows)
+                feet[tool].append(
+                    (number[rows], *one.foot(number[rows], middle.s, middle.rho, middle.instant))
+                )
+        together, top = shares.together(blocks.rows(at[:, 1]) + 1)
         found.append(together)
         tops.append(at[each, best][top])
-    names = _Shares.__slots__
-    every = _Shares(*(np.concatenate([getattr(f, name) for f in found]) for name in names))
+    every = _Shares(*(np.concatenate([getattr(f, name) for f in found]) for name in _Shares.__slots__))
     places = Places(every.bite, np.concatenate(tops), every.largest)
-    return replace(every, largest=climbed(sweep, blank, blocks, places, cells.spacing))
+    metal = Metal(sweep, blank, blocks)
+    every = replace(every, largest=climbed(metal, places, cells.spacing, known))
+    across = float(cells.spacing[0])
+    widths: list[_Widths] = []
+    for tool, one in enumerate(edges):
+        if one is not None:
+            bite, along, turn = (np.concatenate(column) for column in zip(*feet[tool], strict=True))
+            seen = bite.astype(np.int64), along, turn
+            widths.append((tool, engaged(metal, one, sweep.first(tool), seen, (WIDE * across, across))))
+    return every, widths
 
 
 def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
@@ -196,19 +223,6 @@ def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
     first = np.cumsum([0, *(field.count for field in sweep.fields)])
     stretch = np.searchsorted(first[1:], bite, side="right")
     return stretch, bite - first[stretch]
-
-
-def _foot(sweep: Sweep, meeting: Meeting, bite: Ints) -> tuple[Floats, Floats]:
-    """The points (n, 2) of the edge that are nearest to places above it, and `_Shares.slope` there."""
-    stretch, own = stretch_of(sweep, bite)
-    foot, slope = np.zeros((len(bite), 2)), np.ones(len(bite))
-    for n, field in enumerate(sweep.fields):
-        here = np.flatnonzero(stretch == n)
-        s, rho = meeting.s[here], meeting.rho[here]
-        depth, by_s, by_rho = field.outline(own[here], s, rho)
-        foot[here] = np.column_stack([s - depth * by_s, rho - depth * by_rho])
-        slope[here] = 1.0 / np.maximum(np.abs(by_s) + np.abs(by_rho), 1e-12)
-    return foot, slope
 
 
 def _kinds(*columns: Ints) -> tuple[Ints, Ints]:
@@ -222,22 +236,24 @@ def _kinds(*columns: Ints) -> tuple[Ints, Ints]:
 
 
 def _summed(
-    sweep: Sweep, tools: tuple[tuple[Cutter, CutterMotion], ...], shares: list[_Shares], step: float
+    sweep: Sweep,
+    tools: tuple[tuple[Cutter, CutterMotion], ...],
+    shares: list[_Shares],
+    widths: list[_Widths],
+    step: float,
 ) -> Chips:
     """Shares of each tooth's pass together, in the order of time."""
     none = np.zeros(0)
     bite = np.concatenate([none.astype(np.int64), *(s.bite for s in shares)])
-    volume, height, highest, instant, slope = (
+    volume, height, highest, instant = (
         np.concatenate([none, *(getattr(s, name) for s in shares)])
-        for name in ("volume", "height", "largest", "instant", "slope")
+        for name in ("volume", "height", "largest", "instant")
     )
-    foot = np.concatenate([np.zeros((0, 2)), *(s.foot for s in shares)])
     stretch, own = stretch_of(sweep, bite)
     turn, tooth, time = np.zeros_like(own), np.zeros_like(own), np.zeros(len(own))
-    for n, (field, (_, motion)) in enumerate(zip(sweep.fields, tools, strict=True)):
+    for n, (_, motion) in enumerate(tools):
         here = np.flatnonzero(stretch == n)
-        turn[here], number = np.divmod(own[here], field.bites)
-        tooth[here] = field.tooth[number]
+        turn[here], tooth[here] = _named(sweep, n, own[here])
         time[here] = np.interp(instant[here], np.arange(len(motion.time_s)), motion.time_s)
     kinds, chip = _kinds(stretch, turn, tooth)
     n = len(kinds)
@@ -247,13 +263,7 @@ def _summed(
     largest, begin = np.zeros(n), np.full(n, np.inf)
     np.maximum.at(largest, chip, highest)
     np.minimum.at(begin, chip, time)
-    side = 2.0 * step
-    square = np.floor(foot / side).astype(np.int64)
-    order = np.lexsort((square[:, 1], square[:, 0], chip))
-    row = np.column_stack([chip, square])[order]
-    one = order[np.concatenate([[True], (row[1:] != row[:-1]).any(axis=1)])[: len(order)]]
-    width = np.zeros(n)
-    np.add.at(width, chip[one], side * slope[one])
+    width = _widest(sweep, kinds, widths)
     order = np.lexsort((kinds[:, 2], kinds[:, 1], begin))
     return Chips(
         time_s=begin[order],
@@ -266,3 +276,24 @@ def _summed(
         width_mm=width[order],
         resolution_mm=step,
     )
+
+
+def _widest(sweep: Sweep, kinds: Ints, widths: list[_Widths]) -> Floats:
+    """(n,) of chips (n, 3): the most of their edges, in all pieces and slabs, that is in metal at once."""
+    none = np.zeros(0, dtype=np.int64)
+    rows = [(np.full(len(w.bite), tool), *_named(sweep, tool, w.bite), w.row) for tool, w in widths]
+    columns = [np.concatenate([none, *column]) for column in zip(*rows, strict=True)] or [none] * 4
+    instants, number = _kinds(*columns)
+    length = np.zeros(len(instants))
+    np.add.at(length, number, np.concatenate([np.zeros(0), *(w.length for _, w in widths)]))
+    # of chips alone
+    every, which = _kinds(*np.concatenate([kinds, instants[:, :3]]).T)
+    widest = np.zeros(len(every))
+    np.maximum.at(widest, which[len(kinds) :], length)
+    return widest[which[: len(kinds)]]
+
+
+def _named(sweep: Sweep, tool: int, bite: Ints) -> tuple[Ints, Ints]:
+    """Pass and tooth (n,) of a tool's bites."""
+    turn, number = np.divmod(bite, sweep.fields[tool].bites)
+    return turn, sweep.fields[tool].tooth[number]

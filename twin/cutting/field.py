@@ -45,12 +45,15 @@ class DepthField:
         self._basis = motion.basis
         self._mount = motion.mount
         self._rake = Rake(cutter, motion, self.passes)
+        self._tool_angle = motion.tool_angle
+        self._turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(motion.tool_angle)))])
         profile = cutter.profile
         stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
         lean, far = sway(cutter, motion, stock)
         self._sway = lean * far
-        spread = self._spread(stock)
-        teeth = profile.teeth(*spread)
+        self.spread: tuple[float, float] = self._spread(stock)
+        """lowest and highest place of stock along the outlines of all passes [mm]"""
+        teeth = profile.teeth(*self.spread)
         pieces = len(profile.pieces)
         self.has_land: bool = math.isfinite(profile.root)
         """whether the last bite of a pass is the land"""
@@ -146,6 +149,37 @@ class DepthField:
         """Depth in the bites' outlines at places (m,) of their rake planes, and its derivatives."""
         number = bite % self.bites
         return self.cutter.profile.piece_depth(self._piece.take(number), self._middle.take(number), s, rho)
+
+    def turn(self, bite: Ints, instant: Floats) -> Floats:
+        """How far (m,) the tool has turned at instants since the bites' edges pointed at the work [rad]."""
+        return np.interp(instant, np.arange(self.samples), self._tool_angle) - self.passes.angle.take(
+            bite // self.bites
+        )
+
+    def instant(self, bite: Ints, turn: Floats) -> Floats:
+        """When (m,) the tool has turned that far; NaN beyond the run of turning that the bite belongs to."""
+        p, index = self.passes, bite // self.bites
+        at, first, last = p.at.take(index), p.first.take(index), p.last.take(index)
+        own = np.arange(self.samples)
+        way = np.sign(np.interp(last, own, self._tool_angle) - np.interp(first, own, self._tool_angle))
+        ahead = p.angle.take(index) + turn - np.interp(at, own, self._tool_angle)
+        found = np.interp(np.interp(at, own, self._turned) + way * ahead, self._turned, own)
+        return np.where((found > first) & (found < last), found, np.nan)
+
+    def placed(self, bite: Ints, instant: Floats, s: Floats, rho: Floats) -> Floats:
+        """Points (m, 3) of the part that are at places of the bites' outlines at some instants."""
+        index = bite // self.bites
+        return self._rake.placed(index, instant, s + self.passes.shift.take(index), rho)
+
+    def on_tool(self, bite: Ints, s: Floats) -> NDArray[np.bool_]:
+        """Whether (m,) axial positions `s` against the bites' outlines are between the tool's ends."""
+        off = s + self.passes.shift.take(bite // self.bites) - self.cutter.shift
+        return np.abs(off) <= self.cutter.half_length
+
+    def piece(self, bite: Ints) -> tuple[Ints, Floats]:
+        """Which piece of its tooth each bite (m,) is, and the tooth's middle along the edge [mm]."""
+        number = bite % self.bites
+        return self._piece.take(number), self._middle.take(number)
 
     def floors(self, points: Floats, corners: Floats, bite: Ints, radius: Floats) -> Floats:
         """Lower bounds (c, m) of the bites' depths, in the convex hulls of `corners` (m, c, 3).

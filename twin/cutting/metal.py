@@ -6,13 +6,17 @@ from numpy.typing import NDArray
 from twin.cutting.blank import Blank
 from twin.cutting.blocks import Blocks
 from twin.cutting.cells import points
+from twin.cutting.first import NOBODY, first_of
 from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 ASIDE = 1e-4
 """[mm] between places that the slope of the blank's outline is told by"""
+SHORT = 1e-9
+"""share of a slab that is left out below its upper side"""
 
 
 class Metal:
@@ -22,6 +26,8 @@ class Metal:
     def __init__(self, sweep: Sweep, blank: Blank, blocks: Blocks) -> None:
         self._sweep, self._blank, self._blocks = sweep, blank, blocks
         low, high = blocks.z_range
+        # the upper side of a slab is in the next one's blocks, of which nothing is known here
+        high -= SHORT * (high - low)
         self._low = np.array([blank.bore_mm / 2.0, -np.inf, low])
         self._high = np.array([blank.radius, np.inf, high])
 
@@ -43,6 +49,20 @@ class Metal:
         if self._blank.section is not None:
             deep = np.maximum(deep, self._blank.section.beyond(where_to)[0])
         return deep
+
+    def stands(self, bite: Ints, at: Floats, asked: Bools) -> tuple[Bools, Bools]:
+        """Whether (n,) points (n, 3) of the part are metal when bites (n,) come, and whether they lie in this
+        slab; only those `asked` (n,) for are."""
+        r, z = np.hypot(at[:, 0], at[:, 1]), at[:, 2]
+        here = (z >= self._low[2]) & (z <= self._high[2])
+        found = np.flatnonzero(asked & here & self._blank.contains(at))
+        where = np.stack([r, np.arctan2(at[:, 1], at[:, 0]) % (2.0 * np.pi), z], axis=1)[found]
+        rows = self._blocks.rows(where)
+        found, rows = found[rows >= 0], rows[rows >= 0]
+        item, earlier = self._blocks.coming(at[found], rows, 0.0, self._sweep.pass_begin(bite[found]))
+        stands = np.zeros(len(at), dtype=bool)
+        stands[found] = first_of(self._sweep, at[found], item, earlier) == NOBODY
+        return stands, here
 
     def planes(self, bite: Ints, at: Floats, where: Ints, box: Floats) -> tuple[Floats, Floats]:
         """Tangent planes of what bounds the metal within boxes (n, 3) about places (n, 3).

@@ -73,6 +73,30 @@ class Rake:
         end = np.clip(at - state.lag / state.lag_rate, first, last)
         return state, end, end - at
 
+    def placed(self, index: Ints, at: Floats, s: Floats, rho: Floats) -> Floats:
+        """Points (m, 3) of the part that meet the rake faces of passes `index` (m,) at instants `at` (m,), at
+        axial positions `s` and distances `rho` from the tool's axis."""
+        work, tool, cx, cy, cz = self._at(at)
+        angle = self.passes.angle.take(index)
+        turn = tool - angle + self._twist * (s - self._shift)
+        a, b = rho * np.cos(turn), rho * np.sin(turn)
+        if self._lean is not None:
+            cell = np.minimum(at.astype(np.int64), len(self._table) - 1)
+            x, y, d_x, d_y = self._lean.take(cell, axis=0).T
+            a, b, s = upright(a, b, s, -np.stack([x + (at - cell) * d_x, y + (at - cell) * d_y]))
+        x, y, z = self._basis.T @ np.stack([a, b, s]) + np.stack([cx, cy, cz])
+        cos, sin = np.cos(work), np.sin(work)
+        local = np.stack([x * cos + y * sin, y * cos - x * sin, z])
+        if self._moved:
+            local = self._mount.rotation.T @ (local - self._mount.translation[:, None])
+        return local.T
+
+    def _at(self, at: Floats) -> list[Floats]:
+        """Work angle, tool angle and tool centre at fractional samples `at` (m,)."""
+        cell = np.minimum(at.astype(np.int64), len(self._table) - 1)
+        rows = self._table.take(cell, axis=0).T
+        return [value + (at - cell) * step for value, step in zip(rows[:5], rows[5:], strict=True)]
+
     def _ahead(self, local: Floats, index: Ints) -> Floats:
         """Samples (m,) from `passes.at` to where points (3, m) meet their edges, by one step of Newton's."""
         cos, sin, cx, cy, cz = (row.take(index) for row in self.seen)

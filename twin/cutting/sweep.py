@@ -264,6 +264,10 @@ class Sweep:
             begin[here] = bite[here] - (bite[here] - self._first[n]) % f.bites
         return begin
 
+    def first(self, tool: int) -> int:
+        """Number of a tool's first bite."""
+        return int(self._first[tool])
+
     def tool(self, bite: Ints) -> Ints:
         """Number (m,) of the tool that each bite belongs to."""
         return np.searchsorted(self._first, bite, side="right") - 1

@@ -11,12 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.cutting.blank import Blank
-from twin.cutting.blocks import Blocks
 from twin.cutting.climb import highest
 from twin.cutting.metal import Metal
 from twin.cutting.pairs import in_parallel
-from twin.cutting.sweep import Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -80,13 +77,13 @@ class _Tangents:
         return self.height[rows] + (self.slope[rows] * off).sum(axis=2)
 
 
-def climbed(sweep: Sweep, blank: Blank, blocks: Blocks, found: Places, box: Floats) -> Floats:
+def climbed(metal: Metal, found: Places, box: Floats, known: Floats) -> Floats:
     """Heights (n,) of the highest places near the highest of those `found`; 0 for the others.
 
-    `box` (3,) is how far off the next one found may be: across, around and along the axis [mm].
+    `box` (3,) is how far off the next one found may be: across, around and along the axis [mm]. For each bite
+    a height may be `known` (bites,) already.
     """
-    start = _starts(found, APART * box)
-    metal = Metal(sweep, blank, blocks)
+    start = _starts(found, APART * box, known)
     slices = (start[low : low + TOGETHER] for low in range(0, len(start), TOGETHER))
     height = np.zeros(len(found.height))
     height[start] = np.concatenate(
@@ -95,9 +92,10 @@ def climbed(sweep: Sweep, blank: Blank, blocks: Blocks, found: Places, box: Floa
     return np.maximum(height, 0.0)
 
 
-def _starts(found: Places, apart: Floats) -> Ints:
+def _starts(found: Places, apart: Floats, known: Floats) -> Ints:
     """The highest places of each bite that are `apart` (3,) from each other."""
     order = np.lexsort((-found.height, found.bite))
+    order = order[found.height[order] > WORTH * known[found.bite[order]]]
     kept: list[Ints] = [order[:0]]
     for _ in range(STARTS):
         bite = found.bite[order]
