@@ -179,7 +179,8 @@ def _slid(points: Floats, share: Floats, a: Floats, b: Floats) -> NDArray[np.boo
 def _onto_ridges(
     ground: Ground, worst: Worst, points: Floats, leaf: Ints
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Points (n, 3) on sides that two bites made, brought to where those meet; which (n,) run through walls.
+    """Points (n, 3) on sides that two bites made, brought to where those meet; which (n,) run through walls
+    whose edge was not found.
 
     Through a wall the side runs in metal, and its flanks meet above it, or would if nothing cut off the top:
     then the point is on the top.
@@ -204,7 +205,7 @@ def _onto_ridges(
         (here[cut_off], there[cut_off]),
     )
     walls = np.zeros(len(points), dtype=bool)
-    walls[rows] = True
+    walls[rows] = np.abs(there) > SETTLED
     return points, walls
 
 
