@@ -193,7 +193,8 @@ def _slab(
         best = height.argmax(axis=1)
         each = np.arange(len(best))
         shares = _Shares(own.bite, own.volume, height @ SIMPSON, height[each, best], met[1].instant)
-        stretch, number = stretch_of(sweep, own.bite)
+        stretch = sweep.tool(own.bite)
+        number = own.bite - sweep.first(stretch)
         for tool, one in enumerate(edges):
             if one is not None:
                 rows = np.flatnonzero(stretch == tool)
@@ -213,16 +214,9 @@ def _slab(
     for tool, one in enumerate(edges):
         if one is not None:
             bite, along, turn = (np.concatenate(column) for column in zip(*feet[tool], strict=True))
-            seen = bite.astype(np.int64), along, turn
-            widths.append((tool, engaged(metal, one, sweep.first(tool), seen, (WIDE * across, across))))
+            seen, first = (bite.astype(np.int64), along, turn), int(sweep.first(np.array(tool)))
+            widths.append((tool, engaged(metal, one, first, seen, (WIDE * across, across))))
     return every, widths
-
-
-def stretch_of(sweep: Sweep, bite: Ints) -> tuple[Ints, Ints]:
-    """The stretch of each bite (n,), and its number within it."""
-    first = np.cumsum([0, *(field.count for field in sweep.fields)])
-    stretch = np.searchsorted(first[1:], bite, side="right")
-    return stretch, bite - first[stretch]
 
 
 def _kinds(*columns: Ints) -> tuple[Ints, Ints]:
@@ -249,7 +243,8 @@ def _summed(
         np.concatenate([none, *(getattr(s, name) for s in shares)])
         for name in ("volume", "height", "largest", "instant")
     )
-    stretch, own = stretch_of(sweep, bite)
+    stretch = sweep.tool(bite)
+    own = bite - sweep.first(stretch)
     turn, tooth, time = np.zeros_like(own), np.zeros_like(own), np.zeros(len(own))
     for n, (_, motion) in enumerate(tools):
         here = np.flatnonzero(stretch == n)

@@ -102,9 +102,7 @@ class DepthField:
         index = bite // self.bites
 
         def outline(s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
-            number = bite - index * self.bites
-            piece, middle = self._piece.take(number), self._middle.take(number)
-            return self.cutter.profile.piece_depth(piece, middle, s, rho)
+            return self.cutter.profile.piece_depth(*self.piece(bite), s, rho)
 
         return self._meeting(points, index, outline, gradient=gradient)
 
@@ -144,11 +142,6 @@ class DepthField:
             follows[partial] = met
         slope = self._rake.gradient(state, (by_s, by_rho), by_turn, follows) if gradient else np.zeros((0, 3))
         return Meeting(depth, slope, along, rho, end)
-
-    def outline(self, bite: Ints, s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
-        """Depth in the bites' outlines at places (m,) of their rake planes, and its derivatives."""
-        number = bite % self.bites
-        return self.cutter.profile.piece_depth(self._piece.take(number), self._middle.take(number), s, rho)
 
     def turn(self, bite: Ints, instant: Floats) -> Floats:
         """How far (m,) the tool has turned at instants since the bites' edges pointed at the work [rad]."""

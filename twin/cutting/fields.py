@@ -50,10 +50,6 @@ class Field(Protocol):
         """Depth of points (m, 3) in bites (m,)."""
         ...
 
-    def outline(self, bite: Ints, s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
-        """Depth in the bites' outlines at places (m,) of the rake plane, and its derivatives."""
-        ...
-
     def bound(self, meeting: Meeting, bite: Ints, radius: Floats) -> tuple[Floats, Floats]:
         """How much a bite's depth can change, and rise above its tangent, within `radius` (m,)."""
         ...

@@ -212,9 +212,7 @@ class Rake:
 
     def left_to_run(self, instant: Floats, index: Ints) -> Floats:
         """Angle (m,) of the tool from an `instant` (m,) to the nearer end of its pass's run."""
-        cell = np.minimum(instant.astype(np.int64), len(self._table) - 1)
-        line = self._table.take(cell, axis=0)
-        tool = line[:, 1] + (instant - cell) * line[:, 6]
+        tool = self._at(instant)[1]
         return np.minimum(*np.abs(self.passes.run_angle.take(index, axis=0) - tool[:, None]).T)
 
     def gradient(self, state: State, by: tuple[Floats, Floats], by_turn: Floats, follows: Floats) -> Floats:

@@ -264,9 +264,9 @@ class Sweep:
             begin[here] = bite[here] - (bite[here] - self._first[n]) % f.bites
         return begin
 
-    def first(self, tool: int) -> int:
-        """Number of a tool's first bite."""
-        return int(self._first[tool])
+    def first(self, tool: Ints) -> Ints:
+        """Number (m,) of the first bite of each tool."""
+        return self._first.take(tool)
 
     def tool(self, bite: Ints) -> Ints:
         """Number (m,) of the tool that each bite belongs to."""

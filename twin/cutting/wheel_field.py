@@ -99,10 +99,6 @@ class WheelField:
         ends = self.passes.first[index], self.passes.last[index]
         return deepest(self._touch, points, bite - index * self.bites, ends, gradient=gradient)
 
-    def outline(self, bite: Ints, s: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
-        """Depth in the bites' outlines at places (m,), and its derivatives."""
-        return self.cutter.profile.piece_depth(bite % self.bites, np.zeros(len(s)), s, rho)
-
     def floors(self, points: Floats, corners: Floats, bite: Ints, radius: Floats) -> Floats:
         """Lower bounds (c, m) of the bites' depths, in the convex hulls of `corners` (m, c, 3).
 
