@@ -67,6 +67,13 @@ class Blank:
         at, radius = self.steps()[::-1].T
         return np.interp(z, at, radius)
 
+    def least_radius(self, low: Floats, high: Floats) -> Floats:
+        """The smallest outer radius between two heights, lower and higher ones of one shape [mm]."""
+        least = np.minimum(self.outer_radius(low), self.outer_radius(high))
+        for z, radius in self.steps():
+            np.minimum(least, radius, out=least, where=(low <= z) & (z <= high))
+        return least
+
     def contains(self, points: Floats) -> NDArray[np.bool_]:
         """Whether points (n, 3) lie strictly inside."""
         r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]

@@ -45,12 +45,14 @@ class DepthField:
         self._basis = motion.basis
         self._mount = motion.mount
         self._rake = Rake(cutter, motion, self.passes)
+        self._seen: Floats = self._rake.across()
         self._tool_angle = motion.tool_angle
         self._turned = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(motion.tool_angle)))])
         profile = cutter.profile
         stock = StockCylinder.around(motion.mount, stock_radius, stock_z)
         lean, far = sway(cutter, motion, stock)
         self._sway = lean * far
+        self._reach: Floats = cutter.radius + self.passes.carried + self._sway
         self.spread: tuple[float, float] = self._spread(stock)
         """lowest and highest place of stock along the outlines of all passes [mm]"""
         teeth = profile.teeth(*self.spread)
@@ -239,15 +241,17 @@ class DepthField:
         return change, bent
 
     def near(self, point: Floats, radius: float, among: Ints | None = None) -> Ints:
-        """Passes, of all or `among` some (m,), whose tool may come within `radius` [mm] of a point (3,)."""
-        local = self._mount.rotation @ point + self._mount.translation
+        """Passes, of all or `among` some (m,), whose tool may come within `radius` [mm] of a point (3,).
+
+        While the work turns by up to `swing`, the point stays on an arc: it comes nearer to the tool's axis
+        by its way along the arc's tangent, seen along that axis, and by what the arc leaves the tangent.
+        """
+        x, y, z = self._mount.rotation @ point + self._mount.translation
         rows: slice | Ints = slice(None) if among is None else among
-        state = self._rake.seen[:, rows]
-        x = local[0] * state[0] - local[1] * state[1] - state[2]
-        y = local[0] * state[1] + local[1] * state[0] - state[3]
-        z = local[2] - state[4]
-        a, b = self._basis[:2] @ np.stack([x, y, z])
-        reach = self.cutter.radius + radius + self.passes.travel[rows] + self._sway
+        swing = self.passes.swing[rows]
+        (a, a_rate), (b, b_rate) = np.array([[x, y, z, 1.0], [-y, x, 0.0, 0.0]]) @ self._seen[:, :, rows]
+        nearer = np.sqrt(a_rate * a_rate + b_rate * b_rate) + 0.5 * math.hypot(x, y) * swing
+        reach = self._reach[rows] + swing * nearer + radius
         found = np.flatnonzero(a * a + b * b < reach * reach)
         return found if among is None else among[found]
 

@@ -55,10 +55,11 @@ def face_moments(origin: Ints, faces: Iterable[Ints], times: Iterable[Floats]) -
         (m,) NaN on what is left of the blank's skin.
 
     """
-    latest = [
-        np.where(np.isnan(time), -np.inf, time)[face].max(axis=1)
-        for face, time in zip(faces, times, strict=True)
-    ]
+    latest = []
+    for face, time in zip(faces, times, strict=True):
+        known = np.where(np.isnan(time), -np.inf, time)
+        corners = (known.take(corner) for corner in face.T)
+        latest.append(np.maximum(np.maximum(next(corners), next(corners)), next(corners)))
     known = np.concatenate([*latest, [-np.inf]])  # the last for −1
     found = known[origin]
     return np.where(np.isfinite(found), found, np.nan)

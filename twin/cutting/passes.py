@@ -42,6 +42,8 @@ class Passes:
     """(k,) bound on how far a point of the stock moves against the tool carrier during the pass [mm]"""
     carried: Floats
     """(k,) bound on how far the slides alone carry the tool during the pass [mm]"""
+    swing: Floats
+    """(k,) bound on how far the work turns during the pass, away from where it stands at `at` [rad]"""
     run_angle: Floats
     """(k, 2) tool angle at the lower and the upper end of the run [rad]"""
     slant: Floats
@@ -126,6 +128,7 @@ def _bounded(
     samples = np.arange(len(motion.tool_angle), dtype=float)
     tool_rate = np.abs(np.diff(motion.tool_angle))
     turning = np.abs(np.diff(motion.work_angle))
+    turned = np.concatenate([[0.0], np.cumsum(turning)])
     speed = stock_speed(motion, stock_radius)
     jump = stock_radius * _jumps(motion.work_angle) + np.linalg.norm(_jumps(motion.centre), axis=1)
     if motion.lean is not None:
@@ -158,6 +161,7 @@ def _bounded(
             "jolt": jump / slower,
             "samples": np.where(slow, 0.0, 1.0 / across),
         }
+    own = np.interp(at, samples, turned)
     ends = motion.tool_angle[np.stack([first, last], axis=1).astype(int)]
     return Passes(
         at=at,
@@ -167,6 +171,7 @@ def _bounded(
         last=last,
         travel=path[b] - path[a],
         carried=slides[b] - slides[a],
+        swing=np.maximum(np.abs(turned[b] - own), np.abs(own - turned[a])),
         run_angle=np.sort(ends, axis=1),
         creep=creep[b] - creep[a],
         **{name: _window_max(values, a, b) for name, values in bounds.items()},

@@ -91,6 +91,16 @@ class Rake:
             local = self._mount.rotation.T @ (local - self._mount.translation[:, None])
         return local.T
 
+    def across(self) -> Floats:
+        """(2, 4, k) what takes (x, y, z, 1) in the spindle's frame across the tool's axis, at `passes.at`."""
+        cos, sin, cx, cy, cz = self.seen
+        return np.array(
+            [
+                (x * cos + y * sin, y * cos - x * sin, np.full(len(cos), z), -(x * cx + y * cy + z * cz))
+                for x, y, z in self._basis[:2]
+            ]
+        )
+
     def _at(self, at: Floats) -> list[Floats]:
         """Work angle, tool angle and tool centre at fractional samples `at` (m,)."""
         cell = np.minimum(at.astype(np.int64), len(self._table) - 1)

@@ -5,6 +5,7 @@ a widened rectangle keeps all of its vertices, so both fit. Where a wide face do
 as it went in, nothing is taken from it.
 """
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -20,7 +21,7 @@ Bools = NDArray[np.bool_]
 
 WIDE = 4, 12
 """Cells across and along that a wide face spans: chords so long still keep within the metal."""
-DEEP = 1.0
+DEEP = 0.25
 """Cells between wide faces and the blank's skin."""
 WORTH = 10_000
 """Faces of sheets below which nothing is gained."""
@@ -66,7 +67,7 @@ def widened(vertices: Floats, faces: Ints, sheets: Sheets, blank: Blank) -> Wide
     whole = Widened.none(faces)
     if sheets.faces.size < WORTH or blank.section is not None:
         return whole
-    found = _rectangle(np.logical_and.reduce(_deep(vertices[sheets.vertices], blank)))
+    found = _rectangle(_deep(vertices[sheets.vertices], blank))
     if found is None:
         return whole
     (i0, i1), (k0, k1) = found
@@ -80,16 +81,18 @@ def widened(vertices: Floats, faces: Ints, sheets: Sheets, blank: Blank) -> Wide
 
 
 def _deep(points: Floats, blank: Blank) -> Bools:
-    """Whether the points (…, ni, nk, 3) of sheets are some cells away from the blank's skin."""
+    """Which nodes (ni, nk) are some cells away from the blank's skin, of all sheets (n, ni, nk, 3)."""
     across, along = (
-        DEEP * float(np.linalg.norm(np.diff(points, axis=axis), axis=-1).max()) for axis in (-3, -2)
+        DEEP * math.sqrt(float((np.diff(points, axis=axis) ** 2).sum(axis=-1).max())) for axis in (1, 2)
     )
-    flat = points.reshape(-1, 3)
-    unit = flat[:, :2] / np.maximum(np.hypot(flat[:, 0], flat[:, 1]), 1e-9)[:, None]
-    out = np.pad(unit, ((0, 0), (0, 1)))
     reach = max(across, along)
-    steps = across * out, -across * out, np.array([0.0, 0.0, reach]), np.array([0.0, 0.0, -reach])
-    return np.all([blank.contains(flat + step) for step in steps], axis=0).reshape(points.shape[:-1])
+    away = np.hypot(points[..., 0], points[..., 1])
+    height = points[..., 2]
+    low, high = height.min(axis=0) - reach, height.max(axis=0) + reach
+    inside = away.max(axis=0) + across < blank.least_radius(low, high)
+    inside &= 2.0 * (away.min(axis=0) - across) > blank.bore_mm
+    bottom, top = blank.z_range
+    return inside & (low > bottom) & (high < top)
 
 
 def _rectangle(deep: Bools) -> tuple[tuple[int, int], tuple[int, int]] | None:

@@ -19,6 +19,8 @@ FINEST = 2.0**-17
 """[mm] of the grid at least: 7.6 nm"""
 MANTISSA = 24
 """bits of a number in single precision"""
+MIXED = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
+"""odd numbers that coordinates are mixed with: different places seldom give the same then"""
 ROUNDS = 64
 """of parting what may not be joined"""
 WIDER = 4
@@ -46,8 +48,8 @@ def snapped(vertices: Floats, faces: Ints) -> tuple[Floats, Ints, Ints]:
     places = nearest.copy()
     left, kept, number, met = _joined(places, faces)
     rng = np.random.default_rng(0)
-    for turn in range(ROUNDS):
-        near = left[met[left].any(axis=1)]
+    for turn in range(ROUNDS if met.any() else 0):
+        near = left[_at(met, left)]
         shared = _of_shared_edges(near)
         apart = np.isin(number, shared if len(shared) else _pinched(near, met)) & met[number]
         if not apart.any():
@@ -69,20 +71,33 @@ def _joined(places: Ints, faces: Ints) -> tuple[Ints, Bools, Ints, Bools]:
     """The faces left when vertices at one place are one, which (m,) those are, the number of each vertex
     among the places, and which numbers (k,) stand for more than one vertex."""
     number = _numbers(places)
-    met = np.bincount(number) > 1
-    named = number[faces]
+    met = np.bincount(number, minlength=len(number)) > 1
     left = np.ones(len(faces), dtype=bool)
-    here = np.flatnonzero(met[named].any(axis=1))  # nothing changes elsewhere
+    if not met.any():
+        return faces, left, number, met
+    named, here = faces.copy(), _at(met[number], faces)  # nothing changes elsewhere
+    named[here] = number[faces[here]]
     left[here] = _stays(named[here])
-    return named[left], left, number, met
+    return named if left.all() else named[left], left, number, met
+
+
+def _at(some: Bools, faces: Ints) -> Ints:
+    """Rows of the faces with a corner among `some` vertices."""
+    return np.unique(np.flatnonzero(some.take(faces)) // 3)
 
 
 def _numbers(places: Ints) -> Ints:
-    """(n,) the same number for the same place (n, 3)."""
-    number = np.zeros(len(places), dtype=np.int64)
-    for column in places.T:
-        # pairs: three coordinates of up to 25 bits do not fit one word
-        number = np.unique((number << 32) + (column + (1 << 31)), return_inverse=True)[1]
+    """(n,) the same number below n for the same place (n, 3)."""
+    x, y, z = places.T.astype(np.uint64)
+    mixed = x * MIXED[0] + y * MIXED[1] + z * MIXED[2]
+    ordered = np.sort(mixed)
+    shared = ordered[1:][ordered[1:] == ordered[:-1]]
+    number = np.arange(len(places))
+    if len(shared):
+        # what is mixed alike need not be the same place
+        rows = np.flatnonzero(np.isin(mixed, shared))
+        _, first, same = np.unique(places[rows], axis=0, return_index=True, return_inverse=True)
+        number[rows] = rows[first[same.reshape(-1)]]
     return number
 
 

@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 BEYOND = 1.0
 """[mm] that a tool may stay away from a point and still count in `unculled`"""
 
-TOGETHER = 32
+TOGETHER = 16
 """points that are evaluated at once there"""
 
 

@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_cuts import cuts
 
+from twin.benchmark.cases import gear_case
 from twin.cutters.hob import Hob
 from twin.cutting.field import DepthField
+from twin.cutting.passes import REACH
 
 few = settings(derandomize=True, deadline=None, max_examples=20, database=None)
 
@@ -128,6 +130,46 @@ def test_a_pass_is_as_deep_as_its_deepest_bite(cut, seed):
         # far off a wheel's body its field is only about right
         near = whole > -1.0 if cut.cutter.revolved else np.ones(len(points), dtype=bool)
         assert bites.reshape(len(points), -1).max(axis=1)[near] == pytest.approx(whole[near], abs=1e-9)
+
+
+def nearest(field, motion, point):
+    """How near each pass's tool axis comes to a point, at the samples in which its edge faces the work."""
+    work, tool = motion.work_angle, motion.tool_angle
+    x, y, z = motion.mount.moved(point[None])[0]
+    there = np.stack([x * np.cos(work) - y * np.sin(work), x * np.sin(work) + y * np.cos(work), z + 0 * work])
+    off = there.T - motion.centre
+    axis = np.tile(motion.basis[2], (len(work), 1))
+    if motion.lean is not None:
+        axis = np.column_stack([motion.lean, np.sqrt(1.0 - (motion.lean**2).sum(axis=1))]) @ motion.basis
+    away = np.linalg.norm(off - np.einsum("nx,nx->n", off, axis)[:, None] * axis, axis=1)
+    p, sample = field.passes, np.arange(len(work))
+    found = np.full(p.count, np.inf)
+    for n in range(p.count):
+        facing = np.abs(tool - p.angle[n]) <= REACH
+        facing &= (sample >= p.first[n]) & (sample <= p.last[n])
+        found[n] = away[facing].min(initial=np.inf)
+    return found
+
+
+@few
+@given(cut=cuts.filter(lambda cut: not cut.cutter.revolved), seed=st.integers(0, 1000))
+def test_a_pass_whose_tool_comes_near_a_point_is_among_those_near_it(cut, seed):
+    field, radius = cut.field(), 0.2 * cut.feature
+    for point in cut.points(3, seed):
+        way = nearest(field, cut.motion, point)
+        assert set(np.flatnonzero(way < cut.cutter.radius + radius)) <= set(field.near(point, radius))
+
+
+def test_few_others_are_among_them():
+    case = gear_case(module=2.0, teeth=20, width=6.0, hob_diameter=70.0)
+    field = DepthField(case.cutter, case.motion, case.blank.radius, case.blank.z_range)
+    for x, y in ((21.5, 0.0), (15.0, 10.0), (0.0, -18.0)):
+        point = np.array([x, y, -3.0])
+        way = nearest(field, case.motion, point)
+        near = field.near(point, 1.0)
+        assert len(near) < 1.3 * np.count_nonzero(way < case.cutter.radius + 1.0)
+        few = field.near(point, 1.0, np.arange(0, field.passes.count, 7))
+        assert few.tolist() == [n for n in near if n % 7 == 0]
 
 
 @pytest.mark.parametrize("tremble", [0.0, 1e-9, 1e-7, 1e-6])

@@ -86,3 +86,13 @@ def test_where_a_wide_face_meets_the_skin_the_fine_ones_are_taken():
     whole = subtract(blank, surface)
     expected = stock.snapped(vertices, faces)
     assert triangles(whole.vertices, whole.faces) == triangles(expected[0], expected[1])
+
+
+def test_a_step_of_the_blank_between_rows_keeps_them_fine():
+    """The collar's shoulder stands between two rows: neither is inside at its own height alone."""
+    surface = groove(7.0)
+    z = float(np.unique(surface.vertices[:, 2])[60])
+    narrow = ((0.0, 20.0), (z, 20.0), (z, 13.0), (z - 1e-3, 13.0), (z - 1e-3, 20.0), (-10.0, 20.0))
+    whole, notched = (Blank(diameter_mm=20.0, length_mm=10.0, profile=p) for p in (None, narrow))
+    assert len(widened(surface.vertices, surface.faces, surface.sheets, whole).replaced)
+    assert not len(widened(surface.vertices, surface.faces, surface.sheets, notched).replaced)
