@@ -21,20 +21,11 @@ CHORD = 2.5e-4
 """How far the blank's facets may lie inside its circles [mm]."""
 CRUMB = 1e-6
 """[mm³] below which a severed piece is rounding"""
-CLEAR = 0.99
-"""Share of the smallest radius that is cut at which the blank's faces are parted."""
 
 
-def blank_solid(blank: Blank, within: float = 0.0) -> manifold3d.Manifold:
-    """The blank with facets within CHORD of its circles, vertices on them.
-
-    Where nothing comes `within` a radius [mm], its faces are parted there: long facets meet more of a cut.
-    """
-    outline = blank.outline()
-    (inner, low), (_, high) = outline[[0, -1]]
-    if inner < within < outline[[1, -2], 0].min():
-        outline = np.insert(outline, [1, -1], [[within, low], [within, high]], axis=0)
-    turned = lathe(outline, math.ceil(math.pi / math.acos(1.0 - CHORD / blank.radius)))
+def blank_solid(blank: Blank) -> manifold3d.Manifold:
+    """The blank with facets within CHORD of its circles, vertices on them."""
+    turned = lathe(blank.outline(), math.ceil(math.pi / math.acos(1.0 - CHORD / blank.radius)))
     return turned if blank.section is None else turned ^ solid(*blank.section.mesh(*blank.z_range))
 
 
@@ -105,8 +96,7 @@ class Remains:
 
 def subtract(blank: Blank, *surfaces: Surface) -> Remains:
     """One boolean: the blank without the removed solids. The largest piece is the part."""
-    least = min((float(np.hypot(*one.vertices[:, :2].T).min()) for one in surfaces), default=0.0)
-    whole = blank_solid(blank, CLEAR * least)
+    whole = blank_solid(blank)
     wide = [widened(one.vertices, one.faces, one.sheets, blank) for one in surfaces]
     left = _left(whole, surfaces, wide)
     if left is None:

@@ -61,18 +61,6 @@ def test_least_radius_between_heights_sees_every_step():
     assert blank.least_radius(low, high) == pytest.approx(sampled, abs=1e-3)
 
 
-@pytest.mark.parametrize("within", [3.0, 5.0, 11.0])
-def test_faces_parted_where_nothing_is_cut_leave_the_blank_as_it_is(within):
-    """A ring where there is room between bore and skin at both ends, the same solid in any case."""
-    blank = Blank(diameter_mm=30.0, length_mm=9.0, bore_mm=8.0, profile=STEPPED)
-    whole, parted = blank_solid(blank), blank_solid(blank, within)
-    assert parted.volume() == pytest.approx(whole.volume(), rel=1e-12)
-    points = parted.to_mesh64().vert_properties
-    ring = points[np.abs(np.hypot(points[:, 0], points[:, 1]) - within) < 1e-9]
-    assert set(ring[:, 2]) == ({0.0, -9.0} if within == 5.0 else set())
-    assert parted.num_tri() - whole.num_tri() == 2 * len(ring)
-
-
 def test_gear_on_a_chamfered_hub_keeps_tip_chamfer_and_hub(synthetic):
     """Teeth on the middle collar only; the hub below the root and the chamfers stay as they were turned."""
     hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
