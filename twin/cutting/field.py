@@ -173,7 +173,7 @@ class DepthField:
 
     def piece(self, bite: Ints) -> tuple[Ints, Floats]:
         """Which piece of its tooth each bite (m,) is, and the tooth's middle along the edge [mm]."""
-        number = bite % self.bites
+        number = bite - bite // self.bites * self.bites  # numpy's own remainder takes four times as long
         return self._piece.take(number), self._middle.take(number)
 
     def floors(self, points: Floats, corners: Floats, bite: Ints, radius: Floats) -> Floats:

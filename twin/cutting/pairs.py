@@ -88,12 +88,16 @@ def in_parallel(work: Callable[[S], T], slices: Iterator[S]) -> list[T]:
         return list(pool.map(work, parts))
 
 
-def leaders(values: Floats, start: Ints) -> tuple[Floats, Ints]:
+def leaders(values: Floats, start: Ints, owner: Ints | None = None) -> tuple[Floats, Ints]:
     """Largest value of each non-empty list and the position where it first stands.
 
-    Lists must not be empty.
+    Lists must not be empty. `owner` (m,) is the list of each value, where that is known.
     """
+    if owner is None:
+        owner = np.repeat(np.arange(len(start) - 1), np.diff(start))
     largest = np.maximum.reduceat(values, start[:-1])
-    hit = np.flatnonzero(values == np.repeat(largest, np.diff(start)))
-    first = hit[np.searchsorted(hit, start[:-1])]
+    # of several the first is written last
+    hit = np.flatnonzero(values == largest.take(owner))[::-1]
+    first = np.zeros(len(largest), dtype=np.int64)
+    first[owner.take(hit)] = hit
     return largest, first

@@ -109,15 +109,12 @@ class Rake:
 
     def _ahead(self, local: Floats, index: Ints) -> Floats:
         """Samples (m,) from `passes.at` to where points (3, m) meet their edges, by one step of Newton's."""
-        cos, sin, cx, cy, cz = (row.take(index) for row in self.seen)
+        cos, sin, *centre = (row.take(index) for row in self.seen)
         lag, d_work, d_tool, d_cx, d_cy, d_cz = (row.take(index) for row in self._lead)
-        x = local[0] * cos - local[1] * sin
-        y = local[0] * sin + local[1] * cos
-        offset = x - cx, y - cy, local[2] - cz
-        rate = -y * d_work - d_cx, x * d_work - d_cy, -d_cz
-        (a, b, s), (a_rate, b_rate, s_rate) = (
-            [u * row[0] + v * row[1] + w * row[2] for row in self._basis] for u, v, w in (offset, rate)
-        )
+        x, y = local[0] * cos - local[1] * sin, local[0] * sin + local[1] * cos
+        way = np.stack([x - centre[0], y - centre[1], local[2] - centre[2]])
+        rate = np.stack([y * -d_work - d_cx, x * d_work - d_cy, -d_cz])
+        (a, b, s), (a_rate, b_rate, s_rate) = self._basis @ way, self._basis @ rate
         lag -= np.arctan2(b, a)
         lag_rate = d_tool - (a * b_rate - b * a_rate) / (a * a + b * b)
         if self._twist:
@@ -143,10 +140,13 @@ class Rake:
 
     def _unsettled(self, state: State, at: Floats, first: Floats, last: Floats) -> Ints:
         """Rows of the points that can still come closer to their meeting instant."""
-        free = np.abs(state.lag) >= self._settled
-        wanted = at - state.lag / state.lag_rate
+        free = np.flatnonzero(np.abs(state.lag) >= self._settled)
+        if not len(free):
+            return free
+        at, first, last = at.take(free), first.take(free), last.take(free)
+        wanted = at - state.lag.take(free) / state.lag_rate.take(free)
         held = ((at == first) & (wanted < first)) | ((at == last) & (wanted > last))
-        return np.flatnonzero(free & ~held)
+        return free[~held]
 
     def _between(self, local: Floats, first: Floats, last: Floats, angle: Floats) -> Floats:
         """Meeting instants where Newton's steps go round in circles: S changes too much, or everything rests.
@@ -176,14 +176,18 @@ class Rake:
         """Points `local` (3, m) at fractional samples `at` (m,), edges at unwrapped tool `angle`."""
         cell = np.minimum(at.astype(np.int64), len(self._table) - 1)
         part = at - cell
-        work, tool, cx, cy, cz, d_work, d_tool, d_cx, d_cy, d_cz = self._table.take(cell, axis=0).T
+        # columns of their own: every one is read several times
+        rows = np.ascontiguousarray(self._table.take(cell, axis=0).T)
+        work, tool, _, _, _, d_work, d_tool, d_cx, d_cy, d_cz = rows
         work = work + part * d_work
         cos, sin = np.cos(work), np.sin(work)
         x = local[0] * cos - local[1] * sin
         y = local[0] * sin + local[1] * cos
-        offset = np.stack([x - cx - part * d_cx, y - cy - part * d_cy, local[2] - cz - part * d_cz])
-        rate = np.stack([-y * d_work - d_cx, x * d_work - d_cy, -d_cz])
-        a, b, s = self._basis @ offset
+        way = part * rows[7:]
+        way += rows[2:5]
+        np.subtract((x, y, local[2]), way, out=way)
+        rate = np.stack([y * -d_work - d_cx, x * d_work - d_cy, -d_cz])
+        a, b, s = self._basis @ way
         a_rate, b_rate, s_rate = self._basis @ rate
         lean = np.zeros((2, 0))
         if self._lean is not None:

@@ -182,33 +182,42 @@ class Sweep:
         """
         home = points if images is None else images.points
         depth = np.full(len(points), -np.inf)
-        slope = np.zeros((len(points) if gradient else 0, 3))
+        slope = np.zeros((3, len(points) if gradient else 0)).T
         winner = np.full(len(points), -1, dtype=np.int64)
         instant = np.zeros(len(points))
         lists = tangents.lists
-        length = np.diff(lists.start)[block]
+        length = np.diff(lists.start).take(block)
         some = np.flatnonzero(length)
+        whole = len(some) == len(points)
 
         def work(part: slice) -> None:
-            items = some[part]
+            items = part if whole else some[part]
             own, count = block[items], length[items]
-            pairs, start = lists.pairs(own), np.concatenate([[0], np.cumsum(count)])
-            owner = np.repeat(np.arange(len(items)), count)
-            way = home[items] - tangents.middle[own]
-            plane = tangents.plane.take(pairs, axis=1)
-            height, bites = plane[0], lists.bites.take(pairs)
+            start = np.concatenate([[0], np.cumsum(count)])
+            owner = np.repeat(np.arange(len(own)), count)
+            pairs = (lists.start.take(own) - start[:-1]).take(owner)
+            pairs += np.arange(len(pairs))
+            way = np.ascontiguousarray((home[items] - tangents.middle.take(own, axis=0)).T)
+            height, *gradients = tangents.plane.take(pairs, axis=1)
             for x in range(3):
-                height += plane[1 + x] * way[:, x].take(owner)
+                rise = way[x].take(owner)
+                rise *= gradients[x]
+                height += rise
             upper = height + tangents.over.take(pairs)
-            out = np.einsum("nx,nx->n", way, way) > (tangents.radius[own] * (1.0 + ROUNDING)) ** 2
+            way *= way
+            out = way.sum(axis=0) > (tangents.radius.take(own) * (1.0 + ROUNDING)) ** 2
             if out.any():
-                upper[out[owner]] = np.inf
+                upper[out.take(owner)] = np.inf
+            bites = lists.bites.take(pairs)
             if images is not None:
                 bites += images.later[items].take(owner)
                 first, last = images.bites[:, items]
-                missing = (bites < first.take(owner)) | (bites > last.take(owner))
-                height[missing] = upper[missing] = -np.inf
-            found = self._highest(points[items], (bites, height, upper), start, gradient=gradient, sign=sign)
+                if bites.min() < first.max() or bites.max() > last.min():
+                    missing = (bites < first.take(owner)) | (bites > last.take(owner))
+                    height[missing] = upper[missing] = -np.inf
+            found = self._highest(
+                points[items], (bites, height, upper), (start, owner), gradient=gradient, sign=sign
+            )
             depth[items], winner[items], instant[items] = found.depth, found.bite, found.instant
             if gradient:
                 slope[items] = found.gradient
@@ -220,40 +229,42 @@ class Sweep:
         self,
         points: Floats,
         pairs: tuple[Ints, Floats, Floats],
-        start: Ints,
+        lists: tuple[Ints, Ints],
         *,
         gradient: bool,
         sign: bool,
     ) -> Deepest:
-        """The deepest of the bites (m,) whose lists for points (n, 3) begin at `start` (n + 1,).
+        """The deepest of the bites (m,) in the lists of points (n, 3).
 
-        `pairs` are the bites, how high their tangents stand, −inf where there is none, and upper bounds.
+        `pairs` are the bites, how high their tangents stand, −inf where there is none, and upper bounds;
+        `lists` is where each point's begins (n + 1,), and whose each pair is (m,).
         """
         bites, height, upper = pairs
-        owner = np.repeat(np.arange(len(points)), np.diff(start))
-        level, first = leaders(height, start)
-        none = level == -np.inf
-        best = self.evaluate(points, np.where(none, 0, bites[first]), gradient=gradient)
-        floor, leading, slope, instant = best.depth, bites[first], best.gradient, best.instant
+        start, owner = lists
+        level, first = leaders(height, start, owner)
+        leading, none = bites.take(first), np.flatnonzero(level == -np.inf)
+        leading[none] = 0
+        best = self.evaluate(points, leading, gradient=gradient)
+        floor, slope, instant = best.depth, best.gradient, best.instant
         floor[none], leading[none] = -np.inf, -1
-        rivals = upper > floor[owner]
+        rivals = upper > floor.take(owner)
         rivals[first] = False
         if sign:
-            rivals &= (floor <= 0)[owner]
+            rivals &= (floor <= 0).take(owner)
             rivals &= upper > 0
         rivals = np.flatnonzero(rivals)
         if len(rivals):
-            who = owner[rivals]
-            other = self.evaluate(points[who], bites[rivals], gradient=gradient)
+            who = owner.take(rivals)
+            other = self.evaluate(points.take(who, axis=0), bites.take(rivals), gradient=gradient)
             begin = np.concatenate([[0], np.flatnonzero(np.diff(who)) + 1, [len(who)]])
             deepest, at = leaders(other.depth, begin)
             who = who[begin[:-1]]
             higher = deepest > floor[who]
-            floor[who[higher]] = deepest[higher]
-            leading[who[higher]] = bites[rivals[at[higher]]]
-            instant[who[higher]] = other.instant[at[higher]]
+            who, at = who[higher], at[higher]
+            floor[who], leading[who] = deepest[higher], bites[rivals[at]]
+            instant[who] = other.instant[at]
             if gradient:
-                slope[who[higher]] = other.gradient[at[higher]]
+                slope[who] = other.gradient[at]
         return Deepest(floor, slope, leading, instant)
 
     def pass_begin(self, bite: Ints) -> Ints:

@@ -30,41 +30,49 @@ class Proved:
     block: Ints
     """(gaps, nu, nz)"""
     later: Ints
-    """(gaps, nz) bites by which a cell's own come after the block's"""
+    """(gaps · nz,) bites by which a cell's own come after the block's, gap by gap like the following"""
     bites: Ints
-    """(2, gaps, nz) first and last of the bites that there are of those"""
+    """(2, gaps · nz) first and last of the bites that there are of those"""
     turns: Floats
-    """(gaps, nz, 3, 3) turns the cells to where their blocks are"""
+    """(9, gaps · nz) matrices, row by row, that turn the cells to where their blocks are"""
     moves: Floats
-    """(3, gaps, nz) and moves them there, in the spindle's frame [mm]"""
+    """(3, gaps · nz) and what moves them there [mm]"""
     pairs: int
     """pairs of block and bite evaluated"""
 
-    def images(self, points: Floats, gap: Ints, k: Ints) -> Images:
-        """Points (n, 3) of cells, or of their corners, seen from the cells' blocks."""
-        shift = self.chart.mount.translation
-        # turned about the spindle's axis, which need not be the part's
-        seen = self.turned(points, gap, k) + (self.moves[:, gap, k].T - shift) @ self.chart.mount.rotation
-        return Images(seen, self.later[gap, k], self.bites[:, gap, k])
+    def images(self, points: Floats, column: Ints) -> Images:
+        """Points (3, n) of cells in columns (n,), or of their corners, seen from the cells' blocks."""
+        seen = self.turned(points, column)
+        for x in range(3):
+            seen[x] += self.moves[x].take(column)
+        return Images(seen.T, self.later.take(column), self.bites.take(column, axis=1))
 
-    def turned(self, ways: Floats, gap: Ints, k: Ints) -> Floats:
-        """Ways (n, 3) of cells, seen from the cells' blocks."""
-        turns = self.turns.reshape(-1, 3, 3).take(gap * self.turns.shape[1] + k, axis=0)
-        return np.einsum("nxy,ny->nx", turns, ways)
+    def turned(self, ways: Floats, column: Ints) -> Floats:
+        """Ways (3, n) of cells in columns (n,), seen from the cells' blocks."""
+        seen = np.empty_like(ways)
+        for x in range(3):
+            np.multiply(self.turns[3 * x].take(column), ways[0], out=seen[x])
+            for y in (1, 2):
+                part = self.turns[3 * x + y].take(column)
+                part *= ways[y]
+                seen[x] += part
+        return seen
 
 
 def _motions(chart: Chart, home: Ints) -> tuple[Floats, Floats]:
-    """Turns (gaps, nz, 3, 3) of cells to their blocks, and moves (3, gaps, nz) in the spindle's frame."""
+    """Turns (9, gaps · nz) and moves (3, gaps · nz) of cells to their blocks."""
     indexing = chart.frame.indexing
     gap, k = np.indices(home.shape[1:])
     rise = chart.z[home[1]] + chart.lift[home[0]] - chart.z[k] - chart.lift[gap]
     angle = 2.0 * math.pi / chart.gaps * (home[0] - gap) + indexing.twist * rise
     cos, sin, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
     rotation, shift = chart.mount.rotation, chart.mount.translation
-    turns = np.stack([cos, -sin, zero, sin, cos, zero, zero, zero, one], axis=-1).reshape(*angle.shape, 3, 3)
+    # about the spindle's axis, which need not be the part's
+    turns = np.stack([cos, -sin, zero, sin, cos, zero, zero, zero, one], axis=-1).reshape(-1, 3, 3)
     moves = turns @ shift
-    moves[..., 2] += rise
-    return rotation.T @ turns @ rotation, np.moveaxis(moves, -1, 0)
+    moves[:, 2] += rise.ravel()
+    turns = rotation.T @ turns @ rotation
+    return np.ascontiguousarray(turns.reshape(-1, 9).T), np.ascontiguousarray(((moves - shift) @ rotation).T)
 
 
 def prove(sweep: Sweep, chart: Chart, tiling: Tiling, thick: float, screwed: Screwed | None) -> Proved:
@@ -115,8 +123,8 @@ def prove(sweep: Sweep, chart: Chart, tiling: Tiling, thick: float, screwed: Scr
         chart=chart,
         tangents=joined(found),
         block=block,
-        later=later,
-        bites=bites,
+        later=later.ravel(),
+        bites=bites.reshape(2, -1),
         turns=turns,
         moves=moves,
         pairs=pairs,

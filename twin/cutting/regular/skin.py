@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 
 from twin.cutting.pairs import in_parallel
 from twin.cutting.regular.proved import Proved
-from twin.cutting.sweep import Images, Sweep
+from twin.cutting.sweep import Deepest, Sweep
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Rows = Ints | slice
 
 SETTLED = 5e-4
 """[mm] below which one Newton step ends on the surface: what is left is its square over a radius, or, where
@@ -48,29 +50,35 @@ def skin(sweep: Sweep, proved: Proved, thick: float) -> Skin:
     """The surface of a chart, with the bites that can make it there."""
     chart = proved.chart
     nu, nz = chart.cells
-    shape = chart.gaps, nu + 1, nz + 1
-    points, normals = np.zeros((2, math.prod(shape), 3))
+    nodes, cells = (chart.gaps, nu + 1, nz + 1), (chart.gaps, nu, nz)
+    points, normals = np.zeros((2, 3, *nodes))
+    vertices, bite = np.zeros((3, *cells)), np.zeros(cells, dtype=np.int64)
+    instant, rising = np.zeros(cells), np.zeros((chart.gaps, nu - 1, nz - 1), dtype=bool)
+    flat = points.reshape(3, -1), normals.reshape(3, -1), vertices.reshape(3, -1)
 
     def cross(part: slice) -> None:
-        points[part], normals[part] = _crossings(sweep, proved, _Nodes.of(proved, shape, part), thick)
+        flat[0][:, part], flat[1][:, part] = _crossings(sweep, proved, _Nodes.of(proved, nodes, part), thick)
 
-    in_parallel(cross, _chunks(len(points)))
-    points, normals = points.reshape(*shape, 3), normals.reshape(*shape, 3)
-    vertices = np.ascontiguousarray(_meet(points, normals).reshape(-1, 3))
-    bite, instant = np.zeros(len(vertices), dtype=np.int64), np.zeros(len(vertices))
+    def meet(gap: int) -> None:
+        vertices[:, gap] = _meet(points[:, gap], normals[:, gap])
 
     def settle(part: slice) -> None:
-        nodes = _Nodes.of(proved, (chart.gaps, nu, nz), part)
-        vertices[part], bite[part], instant[part] = _settled(sweep, proved, nodes, vertices[part])
+        flat[2][:, part], bite.reshape(-1)[part], instant.reshape(-1)[part] = _settled(
+            sweep, proved, _Nodes.of(proved, cells, part), flat[2][:, part]
+        )
 
-    in_parallel(settle, _chunks(len(vertices)))
-    vertices = vertices.reshape(chart.gaps, nu, nz, 3)
-    # four vertices stand around a crossing: split them along the diagonal that comes nearer to it
-    inner = points[:, 1:-1, 1:-1], normals[:, 1:-1, 1:-1]
-    one = _off(*inner, vertices[:, :-1, :-1] + vertices[:, 1:, 1:])
-    other = _off(*inner, vertices[:, 1:, :-1] + vertices[:, :-1, 1:])
-    shape = vertices.shape[:3]
-    return Skin(vertices, one < other, bite.reshape(shape), instant.reshape(shape))
+    def split(gap: int) -> None:
+        # four vertices stand around a crossing: split them along the diagonal that comes nearer to it
+        inner = points[:, gap, 1:-1, 1:-1], normals[:, gap, 1:-1, 1:-1]
+        mine = vertices[:, gap]
+        one = _off(*inner, mine[:, :-1, :-1] + mine[:, 1:, 1:])
+        rising[gap] = one < _off(*inner, mine[:, 1:, :-1] + mine[:, :-1, 1:])
+
+    in_parallel(cross, _chunks(math.prod(nodes)))
+    in_parallel(meet, iter(range(chart.gaps)))
+    in_parallel(settle, _chunks(math.prod(cells)))
+    in_parallel(split, iter(range(chart.gaps)))
+    return Skin(np.ascontiguousarray(np.moveaxis(vertices, 0, -1)), rising, bite, instant)
 
 
 def _chunks(count: int) -> Iterator[slice]:
@@ -85,8 +93,8 @@ class _Nodes:
     """(n,) like the following"""
     i: Ints
     k: Ints
-    cell: Ints
-    """along the gap, of a cell that holds the node"""
+    column: Ints
+    """of a cell that holds the node, as `Proved` counts them"""
     block: Ints
     """of that cell"""
 
@@ -95,70 +103,80 @@ class _Nodes:
         """A slice of the nodes of an array."""
         nu, nz = proved.chart.cells
         gap, i, k = np.unravel_index(np.arange(part.start, part.stop), shape)
-        cell = np.minimum(k, nz - 1)
-        return cls(gap, i, k, cell, proved.block[gap, np.minimum(i, nu - 1), cell])
+        column = gap * nz + np.minimum(k, nz - 1)
+        block = proved.block.take(column + nz * ((nu - 1) * gap + np.minimum(i, nu - 1)))
+        return cls(gap, i, k, column, block)
 
-    def images(self, proved: Proved, points: Floats, rows: Ints) -> Images:
-        """Points of some of the nodes' cells, seen from the cells' blocks."""
-        return proved.images(points, self.gap[rows], self.cell[rows])
+    def deepest(self, sweep: Sweep, proved: Proved, at: Floats, rows: Rows) -> Deepest:
+        """The deepest bite at places (3, n) of some of the nodes' cells."""
+        images = proved.images(at, self.column[rows])
+        return sweep.deepest(at.T, self.block[rows], proved.tangents, gradient=True, images=images)
 
 
 def _settled(sweep: Sweep, proved: Proved, nodes: _Nodes, guess: Floats) -> tuple[Floats, Ints, Floats]:
-    """Vertices (n, 3) brought onto the surface, the bites (n,) that make it there, and when."""
-    vertices, bite, instant = guess.copy(), np.zeros(len(guess), dtype=np.int64), np.zeros(len(guess))
-    left = np.arange(len(vertices))
+    """Vertices (3, n) brought onto the surface, the bites (n,) that make it there, and when."""
+    vertices, count = guess.copy(), guess.shape[1]
+    bite, instant = np.zeros(count, dtype=np.int64), np.zeros(count)
+    rows: Rows = slice(0, count)
     for _ in range(ROUNDS):
-        at = vertices[left]
-        found = sweep.deepest(
-            at, nodes.block[left], proved.tangents, gradient=True, images=nodes.images(proved, at, left)
-        )
-        bite[left], instant[left] = found.bite, found.instant
-        step = found.depth / np.einsum("nx,nx->n", found.gradient, found.gradient)
-        vertices[left] = at - step[:, None] * found.gradient
-        left = left[np.abs(step) > SETTLED]
-        if not len(left):
+        at = vertices[:, rows]
+        found = nodes.deepest(sweep, proved, at, rows)
+        bite[rows], instant[rows] = found.bite, found.instant
+        slope = found.gradient.T
+        step = found.depth / _product(slope, slope)
+        vertices[:, rows] = at - step * slope
+        rows = _left(rows, np.abs(step) > SETTLED)
+        if not len(rows):
             break
     return vertices, bite, instant
 
 
 def _crossings(sweep: Sweep, proved: Proved, nodes: _Nodes, thick: float) -> tuple[Floats, Floats]:
-    """Where the rays of nodes cross the surface, (n, 3), and the unit normals into the material."""
-    start, along = proved.chart.at(nodes.gap, nodes.i, nodes.k, np.zeros(1))
+    """Where the rays of nodes cross the surface, (3, n), and the unit normals into the material."""
+    start, along = (
+        np.ascontiguousarray(v.T) for v in proved.chart.at(nodes.gap, nodes.i, nodes.k, np.zeros(1))
+    )
     tau = _first_planes(proved, nodes, (start, along), thick)
     slope = np.zeros_like(start)
-    left = np.arange(len(start))
+    rows: Rows = slice(0, len(tau))
     for _ in range(ROUNDS):
-        at = start[left] + tau[left, None] * along[left]
-        found = sweep.deepest(
-            at, nodes.block[left], proved.tangents, gradient=True, images=nodes.images(proved, at, left)
-        )
-        slope[left] = found.gradient
-        step = found.depth / np.minimum(np.einsum("nx,nx->n", found.gradient, along[left]), -1e-3)
-        tau[left] = np.clip(tau[left] - step, -thick, thick)
-        left = left[np.abs(step) > NEAR]
-        if not len(left):
+        ahead = along[:, rows]
+        found = nodes.deepest(sweep, proved, start[:, rows] + tau[rows] * ahead, rows)
+        slope[:, rows] = found.gradient.T
+        step = found.depth / np.minimum(_product(found.gradient.T, ahead), -1e-3)
+        tau[rows] = np.clip(tau[rows] - step, -thick, thick)
+        rows = _left(rows, np.abs(step) > NEAR)
+        if not len(rows):
             break
-    slope /= -np.linalg.norm(slope, axis=1, keepdims=True)
-    return start + tau[:, None] * along, slope
+    slope /= -np.sqrt(_product(slope, slope))
+    return start + tau * along, slope
+
+
+def _left(rows: Rows, which: Bools) -> Ints:
+    """Which of some rows are left."""
+    left = np.flatnonzero(which)
+    return left if isinstance(rows, slice) else rows[left]
+
+
+def _product(a: Floats, b: Floats) -> Floats:
+    """Scalar products (…) of vectors (3, …)."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _first_planes(proved: Proved, nodes: _Nodes, rays: tuple[Floats, Floats], thick: float) -> Floats:
-    """Ways (n,) along rays to the first of the bites' tangent planes, seen from the tooth."""
+    """Ways (n,) along rays (3, n) to the first of the bites' tangent planes, seen from the tooth."""
     tangents, lists = proved.tangents, proved.tangents.lists
     start, along = rays
-    whole = np.arange(len(start))
     # in the frame of the blocks the rays of all images are those of the template
-    seen = nodes.images(proved, start, whole).points
-    ahead = proved.turned(along, nodes.gap, nodes.cell)
-    length = np.diff(lists.start)[nodes.block]
-    pairs = lists.pairs(nodes.block)
-    owner = np.repeat(whole, length)
-    plane = tangents.plane.take(pairs, axis=1)
-    way = seen - tangents.middle[nodes.block]
-    level, rate = plane[0], np.zeros(len(pairs))
+    way = proved.images(start, nodes.column).points - tangents.middle.take(nodes.block, axis=0)
+    way, ahead = np.ascontiguousarray(way.T), proved.turned(along, nodes.column)
+    length = np.diff(lists.start).take(nodes.block)
+    owner = np.repeat(np.arange(len(length)), length)
+    level, *gradients = tangents.plane.take(lists.pairs(nodes.block), axis=1)
+    rate = np.zeros(len(owner))
     for x in range(3):
-        level += plane[1 + x] * way[:, x].take(owner)
-        rate += plane[1 + x] * ahead[:, x].take(owner)
+        level += gradients[x] * way[x].take(owner)
+        rate += gradients[x] * ahead[x].take(owner)
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.where(rate < 0, -level / rate, -thick)
     found = np.maximum.reduceat(root, np.concatenate([[0], np.cumsum(length)[:-1]]))
@@ -166,43 +184,39 @@ def _first_planes(proved: Proved, nodes: _Nodes, rays: tuple[Floats, Floats], th
 
 
 def _off(points: Floats, normals: Floats, ends: Floats) -> Floats:
-    """How far the middles of some edges, given as the sums of their `ends`, stand off planes."""
-    return np.abs(np.einsum("...x,...x->...", normals, 0.5 * ends - points))
+    """How far the middles of some edges, given as the sums of their `ends` (3, …), stand off planes."""
+    return np.abs(_product(normals, 0.5 * ends - points))
 
 
 def _meet(points: Floats, normals: Floats) -> Floats:
-    """Where the planes at the corners of each cell meet best, within the cell: (gaps, nu, nz, 3)."""
-    corners = [(a, b) for a in (0, 1) for b in (0, 1)]
-    cut = [(slice(None), slice(a, a - 1 or None), slice(b, b - 1 or None)) for a, b in corners]
+    """Where the planes at the corners of each cell of a gap meet best, within the cell: (3, nu, nz)."""
+    low, high = slice(None, -1), slice(1, None)
+    cut = [(slice(None), i, k) for i in (low, high) for k in (low, high)]
     p, q = [points[at] for at in cut], [normals[at] for at in cut]
-    middle = np.mean(p, axis=0)
-    scatter = np.zeros((6, *middle.shape[:-1]))
-    pull = np.zeros((3, *middle.shape[:-1]))
+    middle = 0.25 * (p[0] + p[1] + p[2] + p[3])
+    scatter, pull = np.zeros((6, *middle.shape[1:])), np.zeros_like(middle)
     pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
     for point, normal in zip(p, q, strict=True):
-        height = np.einsum("...x,...x->...", normal, point - middle)
+        height = _product(normal, point - middle)
         for row, (x, y) in enumerate(pairs):
-            scatter[row] += normal[..., x] * normal[..., y]
-        pull += np.moveaxis(normal * height[..., None], -1, 0)
+            scatter[row] += normal[x] * normal[y]
+        pull += normal * height
     scatter[:3] += 4.0 * STIFFNESS
     shift = _solved(scatter, pull)
     # within the cell, in shares of its edges
     edges = [0.5 * (p[2] + p[3] - p[0] - p[1]), 0.5 * (p[1] + p[3] - p[0] - p[2])]
-    far = np.zeros(middle.shape[:-1])
+    far = np.zeros(middle.shape[1:])
     for edge in edges:
-        share = np.einsum("...x,...x->...", shift, edge) / np.einsum("...x,...x->...", edge, edge)
-        np.maximum(far, np.abs(share), out=far)
-    return middle + shift * np.minimum(1.0, ROOM / np.maximum(far, 1e-9))[..., None]
+        np.maximum(far, np.abs(_product(shift, edge) / _product(edge, edge)), out=far)
+    return middle + shift * np.minimum(1.0, ROOM / np.maximum(far, 1e-9))
 
 
 def _solved(matrix: Floats, right: Floats) -> Floats:
-    """Solutions (…, 3) of symmetric systems: xx, yy, zz, xy, xz, yz of the matrix (6, …), sides (3, …)."""
+    """Solutions (3, …) of symmetric systems: xx, yy, zz, xy, xz, yz of the matrix (6, …), sides (3, …)."""
     xx, yy, zz, xy, xz, yz = matrix
     a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
     d, e, f = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
     determinant = xx * a + xy * b + xz * c
     x, y, z = right
-    return (
-        np.stack([a * x + b * y + c * z, b * x + d * y + e * z, c * x + e * y + f * z], axis=-1)
-        / determinant[..., None]
-    )
+    solved = np.stack([a * x + b * y + c * z, b * x + d * y + e * z, c * x + e * y + f * z])
+    return solved / determinant
