@@ -9,27 +9,27 @@ from twin.cutters.convex import Point
 from twin.errors import InputError
 
 CHORD = 1e-4
-"""Hollow arcs are replaced by chords that stay this close to them [mm]."""
+"""Where hollow arcs are replaced by chords, these stay this close to them [mm]."""
 SAME = 1e-9
 """[mm] below which two points are one"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stroke:
-    """A line, or an arc that bulges out of the tooth, that never runs up again."""
+    """A line, or an arc that never runs up again."""
 
     start: Point
     """(x, rho): half-width and distance from the tool axis [mm]"""
     end: Point
     radius: float = 0.0
-    """0 = a line"""
+    """of an arc, + bulging out of the tooth, − hollow; 0 = a line"""
 
     @property
     def centre(self) -> Point:
         """Of the arc [mm]."""
         (x0, y0), (x1, y1) = self.start, self.end
         chord = math.hypot(x1 - x0, y1 - y0)
-        back = math.sqrt(max(self.radius**2 - chord**2 / 4.0, 0.0)) / chord
+        back = math.copysign(math.sqrt(max(self.radius**2 - chord**2 / 4.0, 0.0)), self.radius) / chord
         return (x0 + x1) / 2.0 + back * (y1 - y0), (y0 + y1) / 2.0 - back * (x1 - x0)
 
     @property
@@ -55,17 +55,17 @@ class Stroke:
         (x0, y0), (x1, y1) = self.start, self.end
         if self.radius:
             cx, cy = self.centre
-            return cx + math.sqrt(max(self.radius**2 - (rho - cy) ** 2, 0.0))
+            return cx + math.copysign(math.sqrt(max(self.radius**2 - (rho - cy) ** 2, 0.0)), self.radius)
         return x0 + (x1 - x0) * (rho - y0) / (y1 - y0)
 
 
-def read_chain(points: Sequence[Sequence[float]], tip: float) -> tuple[Stroke, ...]:
+def read_chain(points: Sequence[Sequence[float]], tip: float, *, chords: bool) -> tuple[Stroke, ...]:
     """The strokes of a tooth with its tip at `tip` [mm] from the axis.
 
     `points` are (half-width, depth below the tip) [mm], from the tip down, with the radius of the arc to
-    the next point where there is one: + bulges out of the tooth, − is hollow. A hollow arc becomes chords
-    within CHORD. Raises InputError for a chain that runs up, back or across the middle, or an arc that
-    cannot be.
+    the next point where there is one: + bulges out of the tooth, − is hollow. With `chords` a hollow arc
+    becomes lines within CHORD of it. Raises InputError for a chain that runs up, back or across the middle,
+    or an arc that cannot be.
     """
     _check(points, tip)
     strokes: list[Stroke] = []
@@ -75,10 +75,9 @@ def read_chain(points: Sequence[Sequence[float]], tip: float) -> tuple[Stroke, .
     for number, (here, there) in enumerate(pairwise(points), start=1):
         start, end = (here[0], tip - here[1]), (there[0], tip - there[1])
         radius = here[2] if len(here) > 2 else 0.0
-        _check_arc(number, start, end, radius)
-        strokes += (
-            _hollow(start, end, -radius) if radius < 0 else [Stroke(start=start, end=end, radius=radius)]
-        )
+        stroke = Stroke(start=start, end=end, radius=radius)
+        _check_arc(number, stroke)
+        strokes += _chords(stroke) if chords and radius < 0 else [stroke]
     return tuple(strokes)
 
 
@@ -134,8 +133,9 @@ def _check_steps(points: Sequence[Sequence[float]]) -> None:
         flat = level
 
 
-def _check_arc(number: int, start: Point, end: Point, radius: float) -> None:
+def _check_arc(number: int, stroke: Stroke) -> None:
     """Raise InputError for an arc that does not reach, turns back in depth, or crosses the middle."""
+    start, end, radius = stroke.start, stroke.end, stroke.radius
     if radius == 0:
         return
     chord = math.hypot(end[0] - start[0], end[1] - start[1])
@@ -144,35 +144,20 @@ def _check_arc(number: int, start: Point, end: Point, radius: float) -> None:
             f"an arc of {radius:g} mm cannot reach from profile point {number} to the next, {chord:g} mm off",
             remedy=f"valid: {chord / 2:.6g} or more (− for a hollow arc)",
         )
-    one, other = _ends(start, end, radius)
+    one, other = stroke.first_normal, stroke.last_normal
     if min(one[0], other[0]) < -SAME:
         raise InputError(
             f"the arc of {radius:g} mm from profile point {number} runs up again before the next",
             remedy="a larger radius, or a point more",
         )
-    if radius < 0 and one[1] * other[1] < 0 and _hollow_middle(start, end, -radius) < 0:
+    if radius < 0 and one[1] * other[1] < 0 and stroke.centre[0] + radius < 0:
         raise InputError(f"the hollow arc from profile point {number} crosses the middle of the tooth")
 
 
-def _ends(start: Point, end: Point, radius: float) -> tuple[Point, Point]:
-    """Outward normals at both ends of an arc."""
-    if radius > 0:
-        arc = Stroke(start=start, end=end, radius=radius)
-        return arc.first_normal, arc.last_normal
-    # a hollow arc is a bulging one seen from its other end
-    arc = Stroke(start=end, end=start, radius=-radius)
-    (ax, ay), (bx, by) = arc.last_normal, arc.first_normal
-    return (-ax, -ay), (-bx, -by)
-
-
-def _hollow_middle(start: Point, end: Point, radius: float) -> float:
-    """Least half-width of a hollow arc."""
-    return Stroke(start=end, end=start, radius=radius).centre[0] - radius
-
-
-def _hollow(start: Point, end: Point, radius: float) -> list[Stroke]:
-    """Chords of a hollow arc."""
-    cx, cy = Stroke(start=end, end=start, radius=radius).centre
+def _chords(hollow: Stroke) -> list[Stroke]:
+    """Lines in place of a hollow arc."""
+    start, end, radius = hollow.start, hollow.end, -hollow.radius
+    cx, cy = hollow.centre
     first = math.atan2(start[1] - cy, start[0] - cx) % (2.0 * math.pi)
     last = math.atan2(end[1] - cy, end[0] - cx) % (2.0 * math.pi)
     step = 2.0 * math.acos(max(1.0 - CHORD / radius, 0.0))

@@ -1,5 +1,6 @@
 """A convex part of a cutting tooth: what depths, and the bounds of the kernel, rest on."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,7 @@ class Round:
     centre: Point
     """(x, rho) [mm]"""
     radius: float
+    """+ bulging, − hollow [mm]"""
     first: Point
     """outward normal at its upper end"""
     last: Point
@@ -44,6 +46,11 @@ class ConvexPiece:
     rounds: tuple[Round, ...]
     half_width: float
     """half its width at its widest above the land [mm]"""
+
+    @property
+    def hollow(self) -> float:
+        """The least radius of its hollow arcs [mm]: it has none."""
+        return math.inf
 
     def depth(self, x: Floats, rho: Floats) -> tuple[Floats, Floats, Floats]:
         """Depth at `x` >= 0 from the middle and `rho` from the tool axis, and its derivatives by both."""

@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 from msgspec import Meta
 
+from twin.cutters.convex import ConvexPiece
 from twin.cutters.cutter import Cutter
 from twin.cutters.profile import ToothProfile, tooth_profile
 from twin.cutters.rack import Chain, RackTooth
@@ -69,8 +70,9 @@ class DiscWheel:
                 )
             if self.width_mm > 2.0 * wide + 1e-9:
                 chain = (*chain, (self.width_mm / 2.0, deep))
-        profile = tooth_profile(chain, tip=tip, land=False)
-        if any(side.normal[1] < -LEVEL for piece in profile.pieces for side in piece.sides):
+        profile = tooth_profile(chain, tip=tip, land=False, chords=True)
+        sides = [s for piece in profile.pieces if isinstance(piece, ConvexPiece) for s in piece.sides]
+        if any(side.normal[1] < -LEVEL for side in sides):
             raise InputError(
                 "the wheel gets narrower somewhere below its tip",
                 remedy="valid: as wide or wider towards the axis",

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.chain import SAME, read_chain
-from twin.cutters.convex import ConvexPiece
-from twin.cutters.pieces import convex_pieces
+from twin.cutters.pieces import Piece, tooth_pieces
 from twin.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -23,7 +22,7 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToothProfile:
-    """A row of equal symmetric teeth, or a single one; each the union of convex pieces.
+    """A row of equal symmetric teeth, or a single one; each the union of pieces without hollow corners.
 
     Everything below the root radius counts as cutting: the land between two teeth of a hob cuts as well.
     """
@@ -34,7 +33,7 @@ class ToothProfile:
     """radius of the land between the teeth [mm]; -inf = none"""
     pitch: float
     """axial distance of the teeth [mm]; inf = a single tooth"""
-    pieces: tuple[ConvexPiece, ...]
+    pieces: tuple[Piece, ...]
     """of the tooth, from its tip down"""
 
     @property
@@ -71,8 +70,8 @@ class ToothProfile:
     ) -> tuple[Floats, Floats, Floats]:
         """Signed depth in one piece of the tooth with its middle at `tooth`, and its derivatives.
 
-        A piece is convex, so this is a concave function; nowhere above `depth`. Its number, beyond the
-        pieces of the tooth, stands for the land. All of the inputs' shape (m,).
+        This is a concave function, but for the known bend of a piece with hollow arcs; nowhere above `depth`.
+        The number of a piece, beyond those of the tooth, stands for the land. All of the inputs' shape (m,).
         """
         local = s - tooth
         across = np.abs(local)
@@ -101,16 +100,24 @@ class ToothProfile:
 
 
 def tooth_profile(
-    points: Sequence[Sequence[float]], *, tip: float, land: bool, pitch: float = math.inf
+    points: Sequence[Sequence[float]],
+    *,
+    tip: float,
+    land: bool,
+    pitch: float = math.inf,
+    chords: bool = False,
 ) -> ToothProfile:
     """The profile of a tooth from its chain of (half-width, depth[, radius to the next]) [mm].
 
     With a `land` the space between the teeth cuts from the last point's depth on; without, the tooth goes on
-    straight down. Raises InputError for a chain that bounds no tooth, or teeth that run into each other.
+    straight down. A hollow arc makes one piece with its neighbours. With `chords` it becomes lines within
+    `chain.CHORD`, and all pieces are convex, as `WheelField` needs them: only then is a point that passes a
+    body of revolution deepest in it once. Raises InputError for a chain that bounds no tooth, or teeth that
+    run into each other.
     """
-    strokes = read_chain(points, tip)
+    strokes = read_chain(points, tip, chords=chords)
     root = tip - points[-1][1] if land else -math.inf
-    profile = ToothProfile(tip=tip, root=root, pitch=pitch, pieces=convex_pieces(strokes, root))
+    profile = ToothProfile(tip=tip, root=root, pitch=pitch, pieces=tooth_pieces(strokes, root))
     if 2.0 * profile.half_width > pitch + SAME:
         raise InputError(
             f"teeth {2.0 * profile.half_width:.4g} mm wide run into each other at a pitch of {pitch:.4g} mm",

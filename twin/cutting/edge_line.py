@@ -1,6 +1,6 @@
 """The cutting edge as a line, and places along it.
 
-Each convex piece of a tooth, and the land between the teeth, has its own line: its sides and arcs one after
+Each piece of a tooth, and the land between the teeth, has its own line: its sides and arcs one after
 the other, from the side of negative s over the tip to the other.
 """
 
@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutters.convex import ConvexPiece, Round, Side
+from twin.cutters.hollow import HollowPiece, Straight
+from twin.cutters.pieces import Piece
 from twin.cutters.profile import ToothProfile
 
 Floats = NDArray[np.float64]
@@ -35,9 +37,10 @@ class EdgeLine:
     centre: Floats
     """(n, 2) (s, rho) of arcs, or where a straight stretch begins [mm]"""
     radius: Floats
-    """(n,) of arcs; 0 = straight [mm]"""
+    """(n,) of arcs, − of hollow ones; 0 = straight [mm]"""
     angle: Floats
-    """(n,) of the outward normal where the stretch begins; it falls along arcs [rad]"""
+    """(n,) of the outward normal where the stretch begins [rad]; it falls along arcs and rises along hollow
+    ones"""
     real: NDArray[np.bool_]
     """(TABLE,) whether it cuts, at even distances: not inside of another piece, nor of the land"""
 
@@ -67,7 +70,8 @@ class EdgeLine:
         for k, (begin, end) in enumerate(zip(self.begin[:-1], self.begin[1:], strict=True)):
             off = place - self.centre[k]
             if self.radius[k]:
-                angle = (self.angle[k] - np.arctan2(off[:, 1], off[:, 0]) + np.pi) % (2.0 * np.pi) - np.pi
+                outward = np.arctan2(*(math.copysign(1.0, self.radius[k]) * off.T[::-1]))
+                angle = (self.angle[k] - outward + np.pi) % (2.0 * np.pi) - np.pi
                 way = angle * self.radius[k]
             else:
                 way = off @ [math.sin(self.angle[k]), -math.cos(self.angle[k])]
@@ -82,14 +86,7 @@ def edge_lines(profile: ToothProfile, teeth: tuple[float, float]) -> tuple[EdgeL
     """The lines of a tooth's pieces about s = 0 and, where there is one, of the land between `teeth` (s)."""
     lines: list[EdgeLine] = []
     far = 2.0 * (abs(profile.tip) + profile.half_width)
-    for piece in profile.pieces:
-        # the tangents at the ends of arcs can be sides once more
-        sides = {(*np.round(side.normal, 9), round(side.height, 9)): side for side in piece.sides}.values()
-        found = [s for side in sides for s in _straight(piece, side, far)]
-        found += [s for arc in piece.rounds for s in _round(piece, arc)]
-        # convex: one after the other by their normals
-        found.sort(key=lambda s: -((s[2] + 0.5 * math.pi) % (2.0 * math.pi)))
-        lines.append(_line(profile, found))
+    lines += [_line(profile, _stretches(piece, far)) for piece in profile.pieces]
     if math.isfinite(profile.root):
         low, high = teeth
         land = (np.array([low, profile.root]), 0.0, 0.5 * math.pi, high - low)
@@ -99,6 +96,41 @@ def edge_lines(profile: ToothProfile, teeth: tuple[float, float]) -> tuple[EdgeL
 
 _Stretch = tuple[Floats, float, float, float]
 """Centre or begin, radius, angle of the normal there, length"""
+
+
+def _stretches(piece: Piece, far: float) -> list[_Stretch]:
+    """The whole outline of a piece, as far as it is above the tool's axis, and within `far` [mm]."""
+    if isinstance(piece, HollowPiece):
+        right = [s for part in piece.parts for s in _as_drawn(part, far)]
+        return [_image(s) for s in right[::-1]] + right
+    # the tangents at the ends of arcs can be sides once more
+    sides = {(*np.round(side.normal, 9), round(side.height, 9)): side for side in piece.sides}.values()
+    found = [s for side in sides for s in _straight(piece, side, far)]
+    found += [s for arc in piece.rounds for s in _round(piece, arc)]
+    # convex: one after the other by their normals
+    return sorted(found, key=lambda s: -((s[2] + 0.5 * math.pi) % (2.0 * math.pi)))
+
+
+def _as_drawn(part: Straight | Round, far: float) -> list[_Stretch]:
+    """A part of an outline that has been drawn from end to end."""
+    if isinstance(part, Straight):
+        angle = math.atan2(part.normal[1], part.normal[0])
+        axis = part.start[1] / part.normal[0] if part.normal[0] > 0 else math.inf
+        centre, radius, length = np.array(part.start), 0.0, min(part.length, axis, far)
+    else:
+        angle, last = (math.atan2(n[1], n[0]) for n in (part.first, part.last))
+        centre, radius, length = np.array(part.centre), part.radius, part.radius * (angle - last)
+    return [(centre, radius, angle, length)] if length > SHORTEST else []
+
+
+def _image(stretch: _Stretch) -> _Stretch:
+    """A stretch on the tooth's other half, where it is met from its other end."""
+    centre, radius, angle, length = stretch
+    if radius:
+        angle -= length / radius
+    else:
+        centre = centre + length * np.array([math.sin(angle), -math.cos(angle)])
+    return centre * [-1.0, 1.0], radius, math.pi - angle, length
 
 
 def _line(profile: ToothProfile, found: list[_Stretch]) -> EdgeLine:

@@ -5,8 +5,9 @@ its depth in the edge's outline at that instant is the pass's field value, posit
 away. The removed stock is where the largest of all passes is positive; that largest value is the signed
 distance to the cut surface, but for the slow motion of the stock in the rake plane.
 
-A pass is made of *bites*: what one convex piece of a tooth of the edge, or the land between the teeth,
-removes of it. That they are convex is what bounds rest on; the field of a pass is that of its deepest bite.
+A pass is made of *bites*: what one piece of a tooth of the edge, or the land between the teeth, removes of
+it. That pieces are convex, but for hollow arcs of known radii, is what bounds rest on; the field of a pass is
+that of its deepest bite.
 
 Where the rake face is a helicoid, the edge at axial position s stands `twist` · s further about the axis.
 """
@@ -69,6 +70,8 @@ class DepthField:
         """(bites,) number of each bite's tooth along the edge; 0 for the land"""
         self._middle = np.asarray(self.tooth * pitch, dtype=np.float64)
         self._piece = np.append(np.tile(np.arange(pieces), len(teeth)), pieces)[: self.bites]
+        hollow = np.tile([piece.hollow for piece in profile.pieces], len(teeth))
+        self._hollow = np.append(hollow, np.inf)[: self.bites]
         self._half_width = np.tile([piece.half_width for piece in profile.pieces], len(teeth))
         swing = math.pi + twisted(cutter, motion, stock)
         gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < swing
@@ -99,7 +102,7 @@ class DepthField:
     def evaluate_bite(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
         """As `evaluate`, for bites: depth in one piece of a tooth, or in the land between the teeth, alone.
 
-        Their outlines are convex, so their depths are concave; the field of a pass is its deepest bite's.
+        The field of a pass is its deepest bite's.
         """
         index = bite // self.bites
 
@@ -180,8 +183,7 @@ class DepthField:
         """Lower bounds (c, m) of the bites' depths, in the convex hulls of `corners` (m, c, 3).
 
         At any convex combination of the corners, a bite's depth is at least the same combination of these:
-        it is concave in the rake plane, and what the map to the rake plane bends within `radius` (m,) of the
-        middle counts twice, at the corners and inside.
+        what is `bent` within `radius` (m,) of the middle counts twice (`bound`).
         """
         middle = self.evaluate_bite(points, bite)
         change, bent = self.bound(middle, bite, radius)
@@ -196,9 +198,16 @@ class DepthField:
 
         Returns
         - change: how much the depth can change at most;
-        - bent: how far the map from space to the rake plane departs from its tangent. With the depth of a
-          bite concave in that plane, tangent + bent bounds the field from above, and a convex combination
-          of its values − 2 bent from below.
+        - bent: tangent + bent bounds the depth from above, and a convex combination of its values − 2 bent
+          from below. With the depth of a bite concave in the rake plane it is how far the map from space
+          to that plane departs from its tangent: once above, and below at the values and where they meet.
+
+        A hollow arc of radius R adds c²/(2 (D + R)) where it is proved at all, at D + R >= 2c: D is the depth
+        here, and c = `change` holds how far off places in the rake plane are. Above that is the law of
+        `hollow.py`. Below, let y be a combination of places in the rake plane and D' its depth, D − c at
+        least. Each place is no deeper than the tangent at y allows, plus its w²/(2 (D' + R)). Of these the
+        combination is c²/(2 (D − c + R)) at most, for its mean square about y is no more than that about
+        the middle: no more than twice what is added.
 
         Writing M(p) = G(p, t(p)) for the map and a for the edge's speed across the rake face, slant = v/a,
         turn = C'/a: |G_pp| <= 1/rho, |G_pt| <= C' + v/rho, |G_tt| <= C'v + v²/rho, |t_p| <= 1/a and
@@ -236,6 +245,10 @@ class DepthField:
             change[rows] = radius[rows] * (far / self.cutter.lever(far) + WIDEST + slant[rows])
             bent[rows] = np.inf
         change += creep
+        if np.isfinite(self._hollow).any():
+            room = meeting.depth + self._hollow.take(bite % self.bites)
+            wide = room >= 2.0 * change
+            bent += np.where(wide, 0.5 * change * change / np.where(wide, room, 1.0), np.inf)
         change[~proved] = np.inf
         bent[~proved] = np.inf
         return change, bent

@@ -2,11 +2,11 @@
 
 Blocks of the grid are halved from coarse to fine. A bite is convex, so its depth is concave in its
 rake plane: its tangent bounds it from above, its corner values from below (`DepthField.bound` adds what the
-map to the rake plane bends). One bite, the block's judge, is evaluated at the corners. The others are
-held against it by the tangents that the parent block had, which hold in its children too; what then has a
-chance is evaluated at the block's own middle and held against it once more. That decides: a block that the
-judge removes whole, a block that no bite touches, or a block to halve, with the bites that can be the
-deepest in it.
+map to the rake plane and hollow arcs bend). One bite, the block's judge, is evaluated at the corners. The
+others are held against it by the tangents that the parent block had, which hold in its children too; what
+then has a chance is evaluated at the block's own middle and held against it once more. That decides: a block
+that the judge removes whole, a block that no bite touches, or a block to halve, with the bites that can be
+the deepest in it.
 """
 
 from collections.abc import Callable

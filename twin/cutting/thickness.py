@@ -3,7 +3,8 @@
 Pieces of cells say about where that is. From there it is climbed to. What earlier bites have left is what
 lies outside of convex bodies; a linear program in a box about the last place says where to go next
 (`climb.py`). The height above an edge is that above the nearest of its lines and arcs, a concave function:
-the tangents of the last places that were tried bound it all.
+the tangents of the last places that were tried bound it all. Hollow arcs bend both by a share of the box
+that is as small as the box is to their radius; what counts is the height at the places themselves.
 """
 
 from dataclasses import dataclass

@@ -8,6 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from twin.cutters.chain import CHORD
+from twin.cutters.disc_wheel import DiscWheel
 from twin.cutters.hob import Hob
 from twin.cutters.polygon_head import PolygonHead
 from twin.cutters.profile import tooth_profile
@@ -46,9 +47,9 @@ def read(points, **more):
 
 
 @few
-@given(points=chains(), seed=st.integers(0, 1000))
-def test_tooth_is_what_its_chain_draws(points, seed, brute_force):
-    profile = read(points, land=False)
+@given(points=chains(), seed=st.integers(0, 1000), chords=st.booleans())
+def test_tooth_is_what_its_chain_draws(points, seed, chords, brute_force):
+    profile = read(points, land=False, chords=chords)
     (outline,) = brute_force.chain_outlines(points, tip=TIP)
     rng = np.random.default_rng(seed)
     n = 60
@@ -62,8 +63,8 @@ def test_tooth_is_what_its_chain_draws(points, seed, brute_force):
     ).T
     depth, by_s, by_rho = profile.depth(s, rho)
     drawn = np.array([brute_force.depth_in_outline(outline, *at) for at in zip(s, rho, strict=True)])
-    # the pieces draw hollow arcs as chords, which stand out of them
-    off = CHORD + 2e-6
+    # chords in place of hollow arcs stand out of them
+    off = CHORD * chords + 2e-6
     assert (depth <= drawn + off).all()
     assert (depth[drawn > off] > 0).all()
     outside = drawn < 0
@@ -73,19 +74,27 @@ def test_tooth_is_what_its_chain_draws(points, seed, brute_force):
 
 
 @few
-@given(points=chains(), seed=st.integers(0, 1000))
-def test_every_piece_is_concave_and_inside_the_tooth(points, seed, brute_force):
-    profile = read(points, land=False)
+@given(points=chains(), seed=st.integers(0, 1000), chords=st.booleans())
+def test_every_piece_keeps_to_its_tangents_and_lies_inside_the_tooth(points, seed, chords, brute_force):
+    """But for what hollow arcs bend it: not at all where there are none, as in a tooth of chords."""
+    profile = read(points, land=False, chords=chords)
     (outline,) = brute_force.chain_outlines(points, tip=TIP)
     rng = np.random.default_rng(seed)
     one, other = (
         np.array([rng.uniform(-4, 4, 400), TIP + rng.uniform(-points[-1][1] - 1, 1, 400)]) for _ in range(2)
     )
+    # far ones and near ones
+    way = (other - one) * np.where(rng.uniform(size=400) < 0.5, 1.0, 0.05)
     for number, piece in enumerate(profile.pieces):
         at = np.full(400, number)
-        depth = [profile.piece_depth(at, 0.0, *p)[0] for p in (one, 0.5 * (one + other), other)]
-        assert (depth[1] >= 0.5 * (depth[0] + depth[2]) - 1e-12).all()
-        for s, rho in one.T[(depth[0] > CHORD + 2e-6)][:5]:
+        depth, by_s, by_rho = profile.piece_depth(at, 0.0, *one)
+        there = profile.piece_depth(at, 0.0, *(one + way))[0]
+        assert (np.abs(there - depth) <= np.hypot(*way) + 1e-12).all()
+        assert piece.hollow == math.inf or not chords
+        room = depth + piece.hollow
+        bent = np.where(room > 1e-9, (way * way).sum(axis=0) / (2.0 * np.maximum(room, 1e-9)), np.inf)
+        assert (there <= depth + by_s * way[0] + by_rho * way[1] + bent + 1e-12).all()
+        for s, rho in one.T[(depth > CHORD * chords + 2e-6)][:5]:
             assert brute_force.depth_in_outline(outline, s, rho) > 0
             assert abs(s) <= piece.half_width
 
@@ -114,16 +123,67 @@ def test_full_radius_tip_is_a_circle():
         np.testing.assert_allclose(profile.depth(s, rho)[0], 1.2 - r, atol=1e-12)
 
 
-def test_hollow_arc_is_held_within_the_stated_chord():
+def hollow_arc(points, turns):
+    """(s, rho) on the hollow arc from the first of some points to the next, by the circle through both."""
+    (x0, _, radius), (x1, down, *_) = points[:2]
+    a, b = complex(x0, TIP), complex(x1, TIP - down)
+    centre = (a + b) / 2 + 1j * (b - a) / abs(b - a) * math.sqrt(radius**2 - abs(b - a) ** 2 / 4)
+    arc = centre + (a - centre) * np.exp(1j * np.angle((b - centre) / (a - centre)) * turns)
+    return arc.real, arc.imag, (arc - centre) / abs(radius)
+
+
+HOLLOW = [[0.5, 0.0, -10.0], [2.0, 4.0], [2.0, 5.0]]
+
+
+def test_depth_above_a_hollow_arc_is_the_distance_from_its_circle():
+    s, rho, inwards = hollow_arc(HOLLOW, np.linspace(0.0, 1.0, 501))
+    profile = tooth_profile(HOLLOW, tip=TIP, land=False)
+    assert len(profile.pieces) == 1
+    for depth in (-0.3, 0.0, 1e-7, 0.4):
+        found = profile.depth(s + depth * inwards.real, rho + depth * inwards.imag)
+        # next to its ends other parts of the outline are nearer
+        near = slice(100, 300)
+        np.testing.assert_allclose(found[0][near], depth, atol=1e-12)
+        np.testing.assert_allclose(found[1][near], inwards.real[near], atol=1e-9)
+        np.testing.assert_allclose(found[2][near], inwards.imag[near], atol=1e-9)
+
+
+def test_hollow_arc_of_a_wheel_is_held_within_the_stated_chord():
     """On the true arc the depth is between 0 and CHORD."""
-    points = [[0.5, 0.0, -10.0], [2.0, 4.0], [2.0, 5.0]]
-    profile = tooth_profile(points, tip=TIP, land=False)
-    a, b = complex(0.5, TIP), complex(2.0, TIP - 4.0)
-    centre = (a + b) / 2 + 1j * (b - a) / abs(b - a) * math.sqrt(100.0 - abs(b - a) ** 2 / 4)
-    arc = centre + (a - centre) * np.exp(1j * np.linspace(0, np.angle((b - centre) / (a - centre)), 5001))
-    depth = profile.depth(arc.real, arc.imag)[0]
+    s, rho, _ = hollow_arc(HOLLOW, np.linspace(0.0, 1.0, 5001))
+    depth = tooth_profile(HOLLOW, tip=TIP, land=False, chords=True).depth(s, rho)[0]
     assert depth.min() >= -1e-9
     assert 0.5 * CHORD < depth.max() <= CHORD * (1 + 1e-6)
+    wheel = DiscWheel(outside_diameter_mm=2.0 * TIP, profile=tuple(tuple(point) for point in HOLLOW))
+    assert all(piece.hollow == math.inf for piece in wheel.outline().pieces)
+    np.testing.assert_array_equal(wheel.outline().depth(s, rho)[0], depth)
+
+
+def test_a_hollow_arc_splits_no_tooth():
+    """It stays with what it meets smoothly or at an outer corner, and is parted from what is hollow to it."""
+    smooth = [[0.3, 0.0, 0.5], [0.8, 0.5], [0.8, 1.0, -2.0], [2.8, 3.0]]
+    assert [piece.hollow for piece in tooth_profile(smooth, tip=TIP, land=True).pieces] == [2.0]
+    parted = [[0.3, 0.0], [0.8, 2.0, -8.0], [1.6, 3.0, -9.0], [2.9, 3.75]]
+    assert [piece.hollow for piece in tooth_profile(parted, tip=TIP, land=True).pieces] == [
+        math.inf,
+        8.0,
+        9.0,
+    ]
+
+
+def test_a_side_drawn_on_past_a_waist_ends_there(brute_force):
+    """It would come back into the tooth below."""
+    waist = [[0.6, 0.0], [0.6, 1.0], [0.9, 1.0, -0.65], [0.9, 2.2], [0.9, 3.0]]
+    profile = tooth_profile(waist, tip=TIP, land=False)
+    (outline,) = brute_force.chain_outlines(waist, tip=TIP)
+    s, rho = np.meshgrid(np.linspace(0.0, 1.0, 41), TIP - np.linspace(-0.1, 3.0, 63))
+    drawn = np.array(
+        [brute_force.depth_in_outline(outline, *at) for at in zip(s.flat, rho.flat, strict=True)]
+    )
+    depth = profile.depth(s.ravel(), rho.ravel())[0]
+    sure = np.abs(drawn) > 1e-6
+    np.testing.assert_array_equal(depth[sure] > 0, drawn[sure] > 0)
+    np.testing.assert_allclose(depth[drawn < 0], drawn[drawn < 0], atol=2e-6)
 
 
 @pytest.mark.parametrize(

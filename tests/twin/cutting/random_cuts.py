@@ -37,7 +37,7 @@ class RandomCut:
     """whether the outline has hollow corners: then the field inside is no distance, only positive"""
 
     chords: float = 0.0
-    """how far the outline may stand out of its hollow arcs [mm]"""
+    """how far a wheel's outline may stand out of its hollow arcs [mm]"""
 
     def truth(self, point):
         """Depth by the independent evaluator, and the instant [samples] of it."""
@@ -124,6 +124,54 @@ def hobbings(draw):
     )
 
 
+@st.composite
+def hollow_hobbings(draw):
+    """A hob of module 2 with hollow flanks, in one arc or in two, on a gear of any helix."""
+    module, helix, teeth = 2.0, draw(between(-30.0, 30.0)), draw(st.integers(12, 40))
+    profile = draw(st.sampled_from(HOLLOW))
+    hob = Hob(
+        normal_module_mm=module,
+        outside_diameter_mm=70.0,
+        gash=draw(st.sampled_from(["straight", "helical"])),
+        profile=profile,
+    )
+    root = module * (teeth / 2.0 / math.cos(math.radians(helix)) - 1.25)
+    cutter, motion = synthetic_motion.hobbing(
+        hob,
+        teeth=teeth,
+        helix_deg=helix,
+        tip_x=root,
+        z=(module, -module),
+        feed=draw(between(1.0, 4.0)),
+        step_deg=draw(between(1.0, 15.0)),
+        swivel_error=draw(st.sampled_from([0.0, 0.05])),
+    )
+    # gashes at right angles to the thread of the pitch cylinder, 65 mm
+    lead = math.asin(module / 65.0)
+    helical = hob.gash == "helical"
+    pitch = math.pi * module * (math.cos(lead) if helical else 1.0 / math.cos(lead))
+    return RandomCut(
+        cutter=cutter,
+        motion=draw(spoiled(motion)),
+        outlines=brute_force.chain_outlines(profile, tip=35.0, land=True, pitch=pitch),
+        pitch=pitch,
+        radii=(root - 0.5 * module, root + 2.3 * module),
+        half_length=1.5 * module,
+        feature=module,
+        gash_lead=-math.pi * 65.0 / math.tan(lead) if helical else math.inf,
+        hollow=True,
+    )
+
+
+HOLLOW = (
+    # flanks by 200 and by 20 mm, and foot and flank by hollow arcs that meet smoothly or at a hollow corner
+    ((0.13, 0.0, 0.76), (0.843, 0.5, -200.0), (2.48, 5.0)),
+    ((0.13, 0.0, 0.76), (0.843, 0.5, -20.0), (2.48, 5.0)),
+    ((0.5, 0.0), (0.7, 0.3), (1.9, 4.0, -1.0), (2.7, 5.0)),
+    ((0.13, 0.0, 0.76), (0.843, 0.5, -30.0), (2.0, 3.5, -3.0), (2.8, 5.0)),
+)
+
+
 INSERTS = (
     # a rounded nose on a wider shank, a stepped insert with an undercut, a pointed one with hollow flanks
     ((0.0, 0.0, 0.5), (0.5, 0.5), (0.6, 1.2), (1.4, 1.6)),
@@ -133,10 +181,13 @@ INSERTS = (
 
 
 @st.composite
-def polygon_turnings(draw):
-    """A head of one to three inserts at the ratios of geometry.md 3, plain or with a profile of its own."""
+def polygon_turnings(draw, shapes=((0.0, None), (0.4, None), *((0.0, profile) for profile in INSERTS))):
+    """A head of one to three inserts at the ratios of geometry.md 3, plain or with a profile of its own.
+
+    `shapes` are corner radii and profiles.
+    """
     inserts, radius = draw(st.integers(1, 3)), draw(between(25.0, 60.0))
-    corner, profile = draw(st.sampled_from([(0.0, None), (0.4, None), *((0.0, p) for p in INSERTS)]))
+    corner, profile = draw(st.sampled_from(shapes))
     head = PolygonHead(inserts=inserts, tip_radius_mm=radius, corner_radius_mm=corner, profile=profile)
     across = draw(between(10.0, 30.0))
     cutter, motion = synthetic_motion.polygon_turning(
@@ -158,7 +209,6 @@ def polygon_turnings(draw):
         half_length=2.0,
         feature=1.0,
         hollow=profile is not None,
-        chords=1e-4 if profile == INSERTS[2] else 0.0,
     )
 
 
@@ -243,4 +293,6 @@ def draw_rack(module):
     return ((flat, 0.0, r), (flat + r * cos, r * (1.0 - sin)), (end, 2.5 * module))
 
 
-cuts = st.one_of(hobbings(), polygon_turnings(), grindings())
+cuts = st.one_of(hobbings(), hollow_hobbings(), polygon_turnings(), grindings())
+hollow_cuts = st.one_of(hollow_hobbings(), polygon_turnings(shapes=((0.0, INSERTS[2]),)))
+"""hollow arcs in one bite with what is beside them"""

@@ -127,9 +127,13 @@ def test_twice_the_resolution_changes_no_hobbed_chip_by_two_percent(synthetic):
     assert coarse.total_mm3 == pytest.approx(fine.total_mm3, rel=1e-3)
 
 
-def test_chips_are_what_random_points_say(synthetic):
-    """Of each point the first of all bites that is deeper owns it: volumes by their number, none thicker."""
-    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+@pytest.mark.parametrize("profile", [None, ((0.13, 0.0, 0.76), (0.843, 0.5, -10.0), (2.48, 5.0))])
+def test_chips_are_what_random_points_say(synthetic, profile):
+    """Of each point the first of all bites that is deeper owns it: volumes by their number, none thicker.
+
+    By a hob with straight flanks, and with hollow ones.
+    """
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8, profile=profile)
     blank = Blank(diameter_mm=24.0, length_mm=0.6, bore_mm=15.0)
     tool = synthetic.hobbing(hob, teeth=10, tip_x=7.5, z=(1.0, -1.5), feed=2.0, step_deg=6.0)
     found = chips(blank, (tool,))

@@ -15,6 +15,7 @@ from twin.cutting.motion import RigidTransform
 from twin.cutting.passes import find_passes
 from twin.cutting.refine import cull, first_cull
 from twin.cutting.sweep import Sweep
+from twin.cutting.touch import SETTLED
 from twin.errors import PartError
 
 few = settings(derandomize=True, deadline=None, max_examples=12, database=None)
@@ -105,15 +106,17 @@ def test_no_pass_that_cuts_is_left_out_at_the_start(cut, seed):
     everything = tool_field(cut.cutter, cut.motion, 1.01 * cut.radii[1], (-1e4, 1e4))
     expected = all_depths(everything, points).max(axis=1, initial=-np.inf)
     near = Sweep((field,)).near(points, np.full(len(points), 1e-6))
+    # windows that begin elsewhere end the search for a wheel's deepest instant elsewhere
+    settled = SETTLED if cut.cutter.revolved else 1e-8
     for point, all_of_them, row in zip(points, expected, range(len(points)), strict=True):
         mine = near.of(np.array([row])).bites
         found = field.evaluate_bite(np.repeat(point[None], len(mine), axis=0), mine).depth.max(
             initial=-np.inf
         )
         if all_of_them > 0:
-            assert found == pytest.approx(all_of_them, abs=1e-8)
+            assert found == pytest.approx(all_of_them, abs=settled)
         else:
-            assert found <= 1e-8
+            assert found <= settled
 
 
 @given(

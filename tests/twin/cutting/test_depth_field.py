@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from random_cuts import cuts
+from random_cuts import cuts, hollow_cuts
 
 from twin.benchmark.cases import gear_case
 from twin.cutters.hob import Hob
@@ -89,6 +89,40 @@ def test_bounds_hold_around_a_point(cut, seed):
     assert (np.abs(there.depth - here.depth) <= change + 1e-9).all()
     tangent = here.depth + (here.gradient * step).sum(axis=1)
     assert (there.depth <= tangent + bent + 1e-9).all()
+
+
+@settings(few, max_examples=10)
+@given(cut=hollow_cuts, seed=st.integers(0, 1000))
+def test_bounds_hold_beside_hollow_arcs(cut, seed):
+    """Of tangents and of floors; and, next to arcs much rounder than the tool, not without what they add."""
+    field = cut.field()
+    rng = np.random.default_rng(seed)
+    n = 20_000
+    points = cut.points(n, seed)
+    # passes that no end of a run is near to
+    whole = np.flatnonzero(np.abs(field.passes.angle[:, None] - field.passes.run_angle).min(axis=1) > 4.0)
+    assume(len(whole))
+    bites = rng.choice(whole, n) * field.bites + rng.integers(0, field.bites, n)
+    radius = cut.feature * 10.0 ** rng.uniform(-2.5, -0.3, n)
+    corners = rng.standard_normal((n, 8, 3))
+    corners *= (radius[:, None] / np.linalg.norm(corners, axis=2))[:, :, None]
+    here = field.evaluate_bite(points, bites, gradient=True)
+    # there is a corner, or between two of them
+    share = np.where(rng.uniform(size=n) < 0.5, 1.0, rng.uniform(0.0, 1.0, n))
+    step = share[:, None] * corners[:, 0] + (1.0 - share)[:, None] * corners[:, 1]
+    there = field.evaluate_bite(points + step, bites).depth
+    change, bent = field.bound(here, bites, radius)
+    near = here.depth > -10.0
+    assert (np.abs(there - here.depth) <= change + 1e-9)[near].all()
+    tangent = here.depth + (here.gradient * step).sum(axis=1)
+    assert (there <= tangent + bent + 1e-9).all()
+    floors = field.floors(points, points[:, None] + corners, bites, radius)
+    assert (there >= share * floors[0] + (1.0 - share) * floors[1] - 1e-9)[near].all()
+    rounder = cut.cutter.radius / field._hollow.min()
+    field._hollow[:] = np.inf
+    straight = field.bound(here, bites, radius)[1]
+    assert (straight <= bent).all()
+    assert rounder < 10.0 or (there > tangent + straight + 1e-9).any()
 
 
 @pytest.mark.parametrize("gash", ["straight", "helical"])

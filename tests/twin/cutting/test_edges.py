@@ -34,6 +34,29 @@ def test_an_insert_is_two_sides_two_arcs_and_its_flat(corner):
     assert line.cuts(along).all()
 
 
+def test_hollow_arcs_of_an_edge_have_their_true_length():
+    """A flat, two arcs of a sixth of a circle by 5 mm, and the sides below."""
+    profile = PolygonHead(
+        inserts=1, tip_radius_mm=30.0, profile=((0.5, 0.0, -5.0), (3.0, 2.5 * math.sqrt(3.0)), (3.0, 6.0))
+    ).edge()
+    (line,) = edge_lines(profile, (-2.0, 2.0))
+    arc, side = 5.0 * math.pi / 3.0, 30.0 - 2.5 * math.sqrt(3.0)
+    assert line.length == pytest.approx(2.0 * side + 2.0 * arc + 1.0, abs=1e-9)
+    # the centre is a corner of the triangle of equal sides on the chord
+    centre = np.array([5.5, 30.0])
+    turn = math.pi - np.linspace(0.0, math.pi / 3.0, 9)
+    along = side + arc + 1.0 + 5.0 * (math.pi - turn)
+    out = np.column_stack([np.cos(turn), -np.sin(turn)])
+    for above in (0.0, 0.2):
+        np.testing.assert_allclose(
+            line.at(along[1:-1], above), (centre + (5.0 + above) * out)[1:-1], atol=1e-9
+        )
+        left = line.at(line.length - along[1:-1], above)
+        np.testing.assert_allclose(left, (centre + (5.0 + above) * out)[1:-1] * [-1.0, 1.0], atol=1e-9)
+    np.testing.assert_allclose(line.nearest(line.at(along, 0.1))[1:-1], along[1:-1], atol=1e-9)
+    assert line.cuts(along).all()
+
+
 def test_a_hobs_flanks_cut_down_to_its_land_alone():
     cutter = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8, protuberance_mm=0.05).cutter(0.0)
     for line in edge_lines(cutter.profile, (-10.0, 10.0)):

@@ -59,6 +59,15 @@ def jittered(tool, synthetic):
     return cutter, synthetic.jittered(motion, rng, slide=2e-4, work=1e-5, tool=2e-5)
 
 
+def hollow_hob(radius):
+    """Tip arcs, hollow flanks and a land, by a chain of points."""
+    return Hob(
+        normal_module_mm=1.0,
+        outside_diameter_mm=36.0,
+        profile=((0.065, 0.0, 0.38), (0.4215, 0.25, -radius), (1.24, 2.5)),
+    )
+
+
 FAMILY = {
     "spur": {},
     "right-hand": {"helix_deg": 20.0},
@@ -77,6 +86,8 @@ FAMILY = {
         "teeth": 16,
         "hob": Hob(normal_module_mm=1.0, outside_diameter_mm=36.0, protuberance_mm=0.04),
     },
+    "flanks by 200 mm": {"teeth": 20, "hob": hollow_hob(200.0)},
+    "flanks by 20 mm": {"teeth": 20, "hob": hollow_hob(20.0)},
 }
 
 
@@ -99,7 +110,7 @@ def test_vertices_lie_on_the_envelope_and_facets_near_it(name, synthetic):
     assert np.abs(depth).max() < CELL**2
 
 
-@pytest.mark.parametrize("name", ["right-hand", "undercut"])
+@pytest.mark.parametrize("name", ["right-hand", "undercut", "flanks by 20 mm"])
 def test_both_ways_agree(name, synthetic, monkeypatch):
     """The same part, but for what the cells of both cost."""
     blank, tool = gear(synthetic, **FAMILY[name])
