@@ -176,15 +176,20 @@ def restored(
     corner = np.stack(turns)[same.argmax(axis=0), np.arange(len(wide))]
     number = np.full(len(fine), -1)
     number[corner] = faces[wide]
-    back = fine_faces[made.replaced][:, ::-1]
+    # a corner at a time, for whole faces would be the largest arrays of a run
+    back = [fine_faces[:, n].take(made.replaced) for n in (2, 1, 0)]
     lost = np.zeros(len(fine), dtype=bool)
-    lost[back] = True
+    for mine in back:
+        lost[mine] = True
     new = np.flatnonzero(lost & (number < 0))
     number[new] = len(vertices) + np.arange(len(new))
-    kept = np.ones(len(faces), dtype=bool)
-    kept[wide] = False
+    kept = np.flatnonzero(own >= 0)
+    whole = np.empty((len(kept) + len(made.replaced), 3), dtype=np.int64)
+    whole[: len(kept)] = faces[kept]
+    for n, mine in enumerate(back):
+        whole[len(kept) :, n] = number.take(mine)
     return (
         np.concatenate([vertices, fine[new]]),
-        np.concatenate([faces[kept], number[back]]),
+        whole,
         np.concatenate([np.where(origin >= 0, own, -1)[kept], made.replaced]),
     )

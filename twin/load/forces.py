@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from twin.cutting.motion import CutterMotion
 from twin.kinematics import Kinematics
@@ -165,6 +164,8 @@ def _on_axes(metal: Removal, motion: CutterMotion, push: Floats, kinematics: Kin
 
 def _by_cell(span: Floats, rows: Floats, since: int) -> tuple[Ints, Floats]:
     """Rows (n, k) spread evenly over their spans (n, 2) of the clock, and summed by cell from `since` on."""
+    from scipy.sparse import csr_array  # noqa: PLC0415 - slow to load, and few runs need it
+
     begin = span[:, 0]
     end = np.maximum(span[:, 1], begin + SHORTEST)
     first = np.maximum(np.floor(begin).astype(np.int64), since)

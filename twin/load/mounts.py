@@ -13,7 +13,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
 
 from twin.load.forces import Stiff
 from twin.load.timeline import COLUMNS, CuttingLoad
@@ -31,6 +30,8 @@ def balanced(found: Stiff, before: CuttingLoad, given: Floats, *, first: int) ->
     `found` on a motion in which the mounts gave way by `given` (n, 3) [µm] in the mean of each tick; `before`
     is what acts before. In the last tick mounts are taken to stand still.
     """
+    from scipy.linalg import solve_banded  # noqa: PLC0415 - slow to load, and few runs need it
+
     count = len(given)
     load, compliance = found.load, found.load.compliance_um_per_n / UM
     tick = load.cell // load.parts - first
