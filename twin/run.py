@@ -21,9 +21,10 @@ from twin.course import CHUNK, Course
 from twin.cutting.chips import chips
 from twin.cutting.cut import cut
 from twin.cutting.plan import plan_grid
-from twin.inspection.deviation import deviation_map
-from twin.inspection.inspection import inspect
+from twin.inspection.deviation import deviations
+from twin.inspection.inspection import inspect_solid
 from twin.inspection.sheet import to_json
+from twin.inspection.solid import check_solid
 from twin.job.schema import Job
 from twin.load.figures import load_figures
 from twin.load.loaded import run_under_load
@@ -131,8 +132,9 @@ def run_job(job: Job, out: Path, options: Options, reporter: Reporter | None = N
         with watch.measure("inspection"):
             if job.inspection.datum == "spindle":
                 mesh = ready.tools[0].kinematics.mount.moved(mesh[0]), mesh[1]
-            inspection = inspect(*mesh, job.nominal, own_axis=job.inspection.datum == "fit")
-            deviation = deviation_map(*mesh, inspection)
+            solid = check_solid(*mesh)
+            inspection = inspect_solid(solid, job.nominal, own_axis=job.inspection.datum == "fit")
+            deviation = deviations(solid, inspection)
         outcome = Outcome(
             job=job,
             options=options,

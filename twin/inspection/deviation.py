@@ -29,7 +29,11 @@ def deviation_map(vertices: ArrayLike, faces: ArrayLike, inspection: Inspection)
         InputError: the mesh is no closed 2-manifold of finite numbers.
 
     """
-    solid = check_solid(vertices, faces)
+    return deviations(check_solid(vertices, faces), inspection)
+
+
+def deviations(solid: Solid, inspection: Inspection) -> Floats:
+    """As `deviation_map`, of a mesh that was checked: (n,) of its vertices."""
     if inspection.axis is not None:
         solid = straightened(solid, inspection.axis)
     value = np.full(len(solid.vertices), np.nan)

@@ -54,6 +54,19 @@ def inspect(
     """
     _check_nominal(nominal, pressure_deg)
     solid = check_solid(vertices, faces)
+    return inspect_solid(solid, nominal, teeth=teeth, pressure_deg=pressure_deg, own_axis=own_axis)
+
+
+def inspect_solid(
+    solid: Solid,
+    nominal: Nominal | None = None,
+    *,
+    teeth: Sequence[int] | Literal["all"] | None = None,
+    pressure_deg: float = PRESSURE_DEG,
+    own_axis: bool = False,
+) -> Inspection:
+    """As `inspect`, a mesh that was checked. Raises InputError for an impossible nominal."""
+    _check_nominal(nominal, pressure_deg)
     wanted = _count(nominal)
     counted = Beside(lambda: separate_bodies(solid))
     outline = recognise(solid, wanted=wanted)
