@@ -1,6 +1,6 @@
 """All tools' depth fields as one: their bites numbered through."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,8 @@ BEYOND = 1.0
 
 TOGETHER = 16
 """points that are evaluated at once there"""
+FEW = 4
+"""points whose passes are looked for at once: a point has up to thousands"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +94,7 @@ class Sweep:
                 depth[some] = np.maximum(depth[some], np.maximum.reduceat(found, start[some]))
             return depth
 
-        slices = (slice(row, min(row + TOGETHER, len(points))) for row in range(0, len(points), TOGETHER))
-        return np.concatenate([np.zeros(0), *in_parallel(work, slices)])
+        return np.concatenate([np.zeros(0), *in_parallel(work, _groups(len(points), TOGETHER))])
 
     def evaluate(self, points: Floats, bite: Ints, *, gradient: bool = False) -> Meeting:
         """As `DepthField.evaluate_bite`, for bites of any tool."""
@@ -140,18 +141,23 @@ class Sweep:
     def near(self, points: Floats, radius: Floats) -> Candidates:
         """Bites that may cut within `radius` (n,) of points (n, 3)."""
 
-        def work(part: slice) -> Candidates:
-            row = part.start
-            found = []
-            for n, f in enumerate(self.fields):
-                reach = float(radius[row]) + 2.0 * self.margin
-                index = f.near(points[row], reach)
-                at = np.broadcast_to(points[row], (len(index), 3))
-                found.append(f.bites_near(at, index, np.full(len(index), reach))[1] + self._first[n])
-            bites = np.concatenate(found)
-            return Candidates(np.array([0, len(bites)]), bites)
+        reach = radius + 2.0 * self.margin
 
-        return join(in_parallel(work, (slice(row, row + 1) for row in range(len(points)))))
+        def work(part: slice) -> Candidates:
+            places, within = points[part], reach[part]
+            owners, bites = [], []
+            for n, f in enumerate(self.fields):
+                lists = [f.near(place, float(far)) for place, far in zip(places, within, strict=True)]
+                own = np.repeat(np.arange(len(places)), [len(index) for index in lists])
+                row, found = f.bites_near(places[own], np.concatenate(lists), within[own])
+                owners.append(own[row])
+                bites.append(found + self._first[n])
+            owner = np.concatenate(owners)
+            order = np.argsort(owner, kind="stable")
+            start = np.searchsorted(owner[order], np.arange(len(places) + 1))
+            return Candidates(start, np.concatenate(bites)[order])
+
+        return join(in_parallel(work, _groups(len(points), FEW)))
 
     def near_of(self, points: Floats, radius: Floats, passes: Sequence[Sequence[Ints]]) -> Candidates:
         """As `near`, of some passes only: given for each point and each tool."""
@@ -285,3 +291,8 @@ class Sweep:
 
     def _of(self, n: int, index: Ints) -> NDArray[np.bool_]:
         return (index >= self._first[n]) & (index < self._first[n + 1])
+
+
+def _groups(count: int, size: int) -> Iterator[slice]:
+    """Slices of `count` items with `size` each."""
+    return (slice(low, min(low + size, count)) for low in range(0, count, size))

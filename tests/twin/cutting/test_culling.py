@@ -193,3 +193,30 @@ def test_tool_that_never_turns_makes_no_pass(synthetic):
     cutter, motion = synthetic.hobbing(HOB, teeth=20, tip_x=17.5, z=(3, -3), feed=3, step_deg=5)
     frozen = synthetic.at_speed(motion, np.zeros(50))
     assert find_passes(cutter, frozen, 22.0, (-4.0, 4.0)).count == 0
+
+
+def test_bites_near_points_are_the_same_however_many_points_are_asked_at_once(synthetic):
+    """Two tools, points within reach of both, of one, and of none."""
+    fields = []
+    for tip_x, z in ((14.0, (2.0, -2.0)), (15.0, (12.0, 6.0))):
+        hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+        cutter, motion = synthetic.hobbing(
+            hob, teeth=16, helix_deg=0.0, tip_x=tip_x, z=z, feed=2.0, step_deg=6.0
+        )
+        fields.append(tool_field(cutter, motion, 20.0, (-10.0, 20.0)))
+    sweep = Sweep(tuple(fields))
+    rng = np.random.default_rng(0)
+    points = np.column_stack([rng.uniform(-20, 20, (30, 2)), np.linspace(-60.0, 60.0, 30)])
+    radius = rng.uniform(0.1, 2.0, 30)
+    together = sweep.near(points, radius)
+    assert (np.diff(together.start) == 0).any()
+    for row in range(30):
+        alone = sweep.near(points[[row]], radius[[row]])
+        own = together.bites[together.start[row] : together.start[row + 1]]
+        expected = [
+            first
+            + f.bites_near(np.tile(points[row], (len(index), 1)), index, np.full(len(index), radius[row]))[1]
+            for f, first in zip(sweep.fields, (0, sweep.fields[0].count), strict=True)
+            for index in [f.near(points[row], radius[row])]
+        ]
+        assert own.tolist() == alone.bites.tolist() == np.concatenate(expected).tolist()
