@@ -192,8 +192,34 @@ def _by_number(number: Ints, face: Ints) -> tuple[Ints, Ints]:
     return packed >> bits, packed & ((1 << bits) - 1)
 
 
+def _paired(faces: Ints, vertex_count: int) -> tuple[Ints, Ints] | None:
+    """The same in one sort; None for a mesh that is refused, or has too many vertices for it."""
+    bits = (len(faces) - 1).bit_length() + 1
+    if 2 * vertex_count.bit_length() + bits > 63:
+        return None
+    # an edge, its sense and its face in one word
+    words = np.empty((3, len(faces)), dtype=np.int64)
+    face, corners = np.arange(len(faces)), np.ascontiguousarray(faces.T)
+    for side, (start, end) in enumerate(zip(corners, np.roll(corners, -1, axis=0), strict=True)):
+        edge = np.minimum(start, end) * vertex_count + np.maximum(start, end)
+        words[side] = ((edge << 1 | (start > end)) << (bits - 1)) | face
+    words = np.sort(words, axis=None)
+    if len(words) % 2:
+        return None
+    rising, falling = words[::2], words[1::2]
+    edge = rising >> (bits - 1)
+    whole = np.array_equal(falling >> (bits - 1), edge + 1) and not (edge & 1).any()
+    if not (whole and (np.diff(edge) > 0).all()):
+        return None
+    mask = (1 << (bits - 1)) - 1
+    return rising & mask, falling & mask
+
+
 def _neighbours(faces: Ints, vertex_count: int) -> tuple[Ints, Ints]:
     """Pair the faces on both sides of every edge: it is passed once in each sense, or the mesh is refused."""
+    paired = _paired(faces, vertex_count)
+    if paired is not None:
+        return paired
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     face = np.repeat(np.arange(len(faces)), 3)
     up = start < end
