@@ -54,6 +54,11 @@ class DepthField:
         lean, far = sway(cutter, motion, stock)
         self._sway = lean * far
         self._reach: Floats = cutter.radius + self.passes.carried + self._sway
+        self._widest: tuple[float, float] = (
+            float(self._reach.max(initial=0.0)),
+            float(self.passes.swing.max(initial=0.0)),
+        )
+        """largest of the reaches and the swings"""
         self.spread: tuple[float, float] = self._spread(stock)
         """lowest and highest place of stock along the outlines of all passes [mm]"""
         teeth = profile.teeth(*self.spread)
@@ -260,13 +265,18 @@ class DepthField:
         by its way along the arc's tangent, seen along that axis, and by what the arc leaves the tangent.
         """
         x, y, z = self._mount.rotation @ point + self._mount.translation
+        away = math.hypot(x, y)
         rows: slice | Ints = slice(None) if among is None else among
-        swing = self.passes.swing[rows]
         (a, a_rate), (b, b_rate) = np.array([[x, y, z, 1.0], [-y, x, 0.0, 0.0]]) @ self._seen[:, :, rows]
-        nearer = np.sqrt(a_rate * a_rate + b_rate * b_rate) + 0.5 * math.hypot(x, y) * swing
-        reach = self._reach[rows] + swing * nearer + radius
-        found = np.flatnonzero(a * a + b * b < reach * reach)
-        return found if among is None else among[found]
+        square = a * a + b * b
+        # most are too far off whichever way the arc leads
+        reach, swing = self._widest
+        some = np.flatnonzero(square < (reach + radius + swing * away * (1.0 + 0.5 * swing)) ** 2)
+        own = some if among is None else among[some]
+        a_rate, b_rate, swing = a_rate.take(some), b_rate.take(some), self.passes.swing.take(own)
+        nearer = np.sqrt(a_rate * a_rate + b_rate * b_rate) + 0.5 * away * swing
+        reach = self._reach.take(own) + swing * nearer + radius
+        return own[square.take(some) < reach * reach]
 
     def bites_near(self, points: Floats, index: Ints, radius: Floats) -> tuple[Ints, Ints]:
         """Rows and bites of the passes `index` (m,) that may cut within `radius` (m,) of `points` (m, 3)."""
