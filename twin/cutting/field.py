@@ -77,6 +77,7 @@ class DepthField:
         self._piece = np.append(np.tile(np.arange(pieces), len(teeth)), pieces)[: self.bites]
         hollow = np.tile([piece.hollow for piece in profile.pieces], len(teeth))
         self._hollow = np.append(hollow, np.inf)[: self.bites]
+        self._bends = bool(np.isfinite(self._hollow).any())
         self._half_width = np.tile([piece.half_width for piece in profile.pieces], len(teeth))
         swing = math.pi + twisted(cutter, motion, stock)
         gap = np.abs(self.passes.angle[:, None] - self.passes.run_angle) < swing
@@ -189,12 +190,19 @@ class DepthField:
 
         At any convex combination of the corners, a bite's depth is at least the same combination of these:
         what is `bent` within `radius` (m,) of the middle counts twice (`bound`).
+
+        A hollow arc of radius R adds c²/(D + R) to that, see there, and proves nothing at D + R < 2c. For let
+        y be a combination of places in the rake plane and D' its depth, D − c at least. Each place is no
+        deeper than the tangent at y allows, plus its w²/(2 (D' + R)). Of these the combination is at most
+        c²/(2 (D − c + R)), for its mean square about y is no more than that about the middle.
         """
         middle = self.evaluate_bite(points, bite)
         change, bent = self.bound(middle, bite, radius)
         count = corners.shape[1]
         depth = self.evaluate_bite(corners.reshape(-1, 3), np.repeat(bite, count)).depth
         floors = depth.reshape(-1, count).T - 2.0 * bent
+        if self._bends:
+            floors[:, self._to_centre(middle, bite) < 2.0 * change] = -np.inf
         level = middle.depth - change
         return np.where(level > floors.mean(axis=0), level, floors)
 
@@ -204,15 +212,12 @@ class DepthField:
         Returns
         - change: how much the depth can change at most;
         - bent: tangent + bent bounds the depth from above, and a convex combination of its values − 2 bent
-          from below. With the depth of a bite concave in the rake plane it is how far the map from space
-          to that plane departs from its tangent: once above, and below at the values and where they meet.
+          from below (`floors`). With the depth of a bite concave in the rake plane it is how far the map
+          from space to that plane departs from its tangent: once above, and below at the values and where
+          they meet.
 
-        A hollow arc of radius R adds c²/(2 (D + R)) where it is proved at all, at D + R >= 2c: D is the depth
-        here, and c = `change` holds how far off places in the rake plane are. Above that is the law of
-        `hollow.py`. Below, let y be a combination of places in the rake plane and D' its depth, D − c at
-        least. Each place is no deeper than the tangent at y allows, plus its w²/(2 (D' + R)). Of these the
-        combination is c²/(2 (D − c + R)) at most, for its mean square about y is no more than that about
-        the middle: no more than twice what is added.
+        A hollow arc of radius R adds c²/(2 (D + R)), by the law of `hollow.py`, and proves nothing above at
+        D <= −R: D is the depth here, and c = `change` holds how far off places in the rake plane are.
 
         Writing M(p) = G(p, t(p)) for the map and a for the edge's speed across the rake face, slant = v/a,
         turn = C'/a: |G_pp| <= 1/rho, |G_pt| <= C' + v/rho, |G_tt| <= C'v + v²/rho, |t_p| <= 1/a and
@@ -250,13 +255,16 @@ class DepthField:
             change[rows] = radius[rows] * (far / self.cutter.lever(far) + WIDEST + slant[rows])
             bent[rows] = np.inf
         change += creep
-        if np.isfinite(self._hollow).any():
-            room = meeting.depth + self._hollow.take(bite % self.bites)
-            wide = room >= 2.0 * change
-            bent += np.where(wide, 0.5 * change * change / np.where(wide, room, 1.0), np.inf)
+        if self._bends:
+            away = self._to_centre(meeting, bite)
+            bent += np.where(away > 0, 0.5 * change * change / np.where(away > 0, away, 1.0), np.inf)
         change[~proved] = np.inf
         bent[~proved] = np.inf
         return change, bent
+
+    def _to_centre(self, meeting: Meeting, bite: Ints) -> Floats:
+        """How far (m,) off the centre is of a disc that fits against the bites' outlines beside a meeting."""
+        return meeting.depth + self._hollow.take(bite % self.bites)
 
     def near(self, point: Floats, radius: float, among: Ints | None = None) -> Ints:
         """Passes, of all or `among` some (m,), whose tool may come within `radius` [mm] of a point (3,).
