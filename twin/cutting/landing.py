@@ -34,9 +34,9 @@ class Ground:
     def __init__(self, sweep: Sweep, grid: Grid, leaves: Leaves) -> None:
         self.sweep, self.grid, self.tangents = sweep, grid, leaves.tangents
         cut = np.flatnonzero(np.diff(leaves.tangents.lists.start))
-        key = grid.node_id(*leaves.low[cut].T)
-        order = np.argsort(key)
-        self._key, self._row = key[order], cut[order]
+        # the finest block with bites at each place, -1 = none
+        self._at = np.full([-(-n // LEAF) for n in grid.cells], -1)
+        self._at[tuple(leaves.low[cut].T // LEAF)] = cut
 
     def field(self, points: Floats, own: Ints) -> Deepest:
         """The deepest bite at points (n, 3); in blocks that are none of the finest, by those of the `own`."""
@@ -53,18 +53,13 @@ class Ground:
 
     def _row_at(self, points: Floats) -> Ints:
         """The finest block (n,) with bites that each point lies in, or −1."""
-        nr, nt, nz = self.grid.cells
         r, z = self.grid.r, self.grid.z
+        turn = np.arctan2(points[:, 1], points[:, 0]) / self.grid.angle(np.array(1))
         i = np.searchsorted(r, np.hypot(points[:, 0], points[:, 1]), side="right") - 1
-        j = (
-            np.floor(np.arctan2(points[:, 1], points[:, 0]) / self.grid.angle(np.array(1))).astype(np.int64)
-            % nt
-        )
+        j = np.floor(turn).astype(np.int64) % self.grid.sectors
         k = np.searchsorted(z, points[:, 2], side="right") - 1
-        low = np.stack([np.clip(i, 0, nr - 1), j, np.clip(k, 0, nz - 1)]) // LEAF * LEAF
-        key = self.grid.node_id(*low)
-        at = np.minimum(np.searchsorted(self._key, key), len(self._key) - 1)
-        return np.where(self._key[at] == key, self._row[at], -1)
+        ends = np.array(self._at.shape) - 1
+        return self._at[np.clip(i // LEAF, 0, ends[0]), j // LEAF, np.clip(k // LEAF, 0, ends[2])]
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,3 +42,50 @@ def parted(faces: Ints, ends: Ints, first: int) -> tuple[Ints, Ints]:
     new = np.concatenate(made)
     kept = faces[left]
     return np.concatenate([kept, new]), len(kept) + np.arange(len(new))
+
+
+def across(faces: Ints, ends: Ints) -> tuple[Ints, Ints]:
+    """The facet (n,) in which each side (n, 2) runs from its first end to its second, and that facet's third
+    corner (n,); −1 where there is none."""
+    near, count = _near(faces, ends)
+    keys = (faces[near] * count + np.roll(faces[near], -1, axis=1)).ravel()
+    if not len(keys):
+        return np.full(len(ends), -1), np.full(len(ends), -1)
+    order = np.argsort(keys)
+    wanted = ends[:, 0] * count + ends[:, 1]
+    at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
+    found = keys[at] == wanted
+    row, corner = np.divmod(at, 3)
+    return np.where(found, near[row], -1), np.where(found, faces[near[row], (corner + 2) % 3], -1)
+
+
+def are_joined(faces: Ints, pairs: Ints) -> NDArray[np.bool_]:
+    """Which pairs (n, 2) of vertices have a side between them."""
+    near, count = _near(faces, pairs)
+    sides = np.sort(np.stack([faces[near], np.roll(faces[near], -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    return among(np.sort(pairs, axis=1), sides, count)
+
+
+def among(pairs: Ints, some: Ints, count: int) -> NDArray[np.bool_]:
+    """Which pairs (n, 2) of numbers below `count` are `some` (m, 2)."""
+    return np.isin(pairs[:, 0] * count + pairs[:, 1], some[:, 0] * count + some[:, 1])
+
+
+def turned(faces: Ints, ends: Ints, facets: Ints, corners: Ints) -> Ints:
+    """Facets whose common sides (n, 2) run between the third `corners` (n, 2) of both instead.
+
+    `facets` and `corners` are those found by `across` for the sides as they are, and the other way.
+    """
+    faces = faces.copy()
+    (a, b), (c, d) = ends.T, corners.T
+    faces[facets[:, 0]] = np.stack([c, a, d], axis=1)
+    faces[facets[:, 1]] = np.stack([d, b, c], axis=1)
+    return faces
+
+
+def _near(faces: Ints, pairs: Ints) -> tuple[Ints, int]:
+    """Facets with two corners or more among those of `pairs`, and a number above those of all corners."""
+    count = int(max(faces.max(initial=0), pairs.max(initial=0))) + 1
+    marked = np.zeros(count, dtype=bool)
+    marked[pairs] = True
+    return np.flatnonzero(marked[faces].sum(axis=1) > 1), count

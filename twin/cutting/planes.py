@@ -12,7 +12,7 @@ Bools = NDArray[np.bool_]
 FEATURE = 3e-5
 """Share of an eigenvalue of the normals' scatter above which planes are taken to meet in that direction: more
 than about 0.6° apart, as feed marks and generating flats are."""
-SHARP = 0.02
+SHARP = 3e-5
 """Share of an eigenvalue as above from which planes (16° apart) meet at an edge that a bite may have"""
 STEPS = 2
 """of Newton's method onto an edge"""

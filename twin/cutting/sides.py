@@ -12,14 +12,20 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-TANGENTS = 2
-"""Places at which a side that a ridge crosses is asked beside its middle"""
+QUARTERS = 0.25, 0.5, 0.75
+"""Shares of the way along a side at which every one is asked"""
+BETWEEN = 0.125, 0.375, 0.625, 0.875
+"""Shares at which those are asked that may stand off it"""
+NEARLY = 0.75
+"""Share of what is aimed at from which on a side is asked more closely"""
+RIDGE = 0.5
+"""The same for how far tangents at both ends let it run in metal"""
+RISE = 4.8
+"""The same for the rise of the tangent at one end over all of its length: a parabola has a quarter of it"""
 SURELY = 0.25
-"""Share of what is aimed at within which a ridge between tangents is left alone."""
-LIKELY = 0.6
-"""Share of what is aimed at that is expected beside a ridge, from which on it is asked"""
-NEAREST = 0.05
-"""Share of the way between two tangents that a third stays away from both"""
+"""The same within which tangents that meet are left alone"""
+NEAREST = 0.02
+"""Share of the way between two places that their tangents must meet away from both"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +44,7 @@ class Mesh:
     """(n,) whether it lies in the blank"""
 
     def cut_in(self, corners: Ints) -> Bools:
-        """Which facets or sides (k, c) bites made, within the blank at least at one end."""
+        """Which facets (k, c) bites made, within the blank at least at one corner."""
         return np.logical_and((self.bite[corners] >= 0).all(axis=1), self.within[corners].any(axis=1))
 
 
@@ -63,16 +69,23 @@ class Worst:
     bite: Ints
     """(n,) the deepest there"""
     bites: Ints
-    """(n, 2) deepest on either side of that place"""
+    """(n, 2) deepest at the nearest places that were asked on either side"""
+    places: Floats
+    """(n, 2) shares of the way at which these are"""
 
     @property
     def error(self) -> Floats:
         """(n,) [mm]"""
         return np.abs(self.depth)
 
-    def of(self, rows: Bools) -> "Worst":
+    def of(self, rows: Bools | Ints) -> "Worst":
         """Those of some sides."""
-        return Worst(self.share[rows], self.depth[rows], self.bite[rows], self.bites[rows])
+        return Worst(self.share[rows], self.depth[rows], self.bite[rows], self.bites[rows], self.places[rows])
+
+    def put(self, rows: Ints, there: "Worst") -> None:
+        """Put in what is known of some sides (m,)."""
+        for name in Worst.__slots__:
+            getattr(self, name)[rows] = getattr(there, name)
 
 
 def sides_of(faces: Ints) -> Sides:
@@ -89,63 +102,130 @@ def lengths(vertices: Floats, ends: Ints) -> Floats:
 
 
 def worst_of(ground: Ground, mesh: Mesh, ends: Ints, rows: Ints, aim: float) -> Worst:
-    """Sides (n, 2) against the field, the `rows` of them that are asked: at their middles, and on ridges.
+    """Sides (n, 2) against the field, the `rows` of them that are asked.
 
-    The field along a side is the deepest bite's. Between two bites it is lowest where their tangents are as
-    deep: tangents are drawn where the field was asked, and the field is asked where they meet, unless that
-    is well within the `aim` [mm]. Between the ridge and the ends it is asked where it may stand as high.
+    They are asked at QUARTERS. Where that, or the tangents at the ends, let expect more than the `aim` [mm],
+    they are asked BETWEEN those as well, and where the tangents of neighbouring places meet highest: there
+    two bites meet, or two sides of one.
     """
     bites = mesh.bite[ends]
-    worst = Worst(np.full(len(ends), 0.5), np.zeros(len(ends)), bites[:, 0].copy(), bites)
-
-    def asked(rows: Ints, share: Floats) -> Deepest:
-        a, b = mesh.vertices[ends[rows]].transpose(1, 0, 2)
-        found = ground.field(a + share[:, None] * (b - a), mesh.leaf[ends[rows, 0]])
-        worse = np.abs(found.depth) > np.abs(worst.depth[rows])
-        at = rows[worse]
-        worst.share[at], worst.depth[at], worst.bite[at] = share[worse], found.depth[worse], found.bite[worse]
-        return found
-
-    found = asked(rows, worst.share[rows])
-    two = (worst.bites[rows] != found.bite[:, None]).any(axis=1)
-    rows, found = rows[two], found.of(two)
-    way = mesh.vertices[ends[rows, 1]] - mesh.vertices[ends[rows, 0]]
-    used, at = np.unique(ends[rows], return_inverse=True)
-    normal = ground.sweep.evaluate(mesh.vertices[used], mesh.bite[used], gradient=True).gradient
-    at_ends = np.einsum("ncx,nx->nc", normal[at.reshape(-1, 2)], way)
-    # place, depth and slope of the tangents on the left and on the right
-    place = np.broadcast_to([0.0, 1.0], at_ends.shape).copy()
-    depth, slope = np.zeros_like(at_ends), at_ends.copy()
-    # over a ridge of metal the field falls and rises again, over a corner it rises and falls
-    hollow = at_ends[:, 0] > at_ends[:, 1]
-    ridge, height = np.full(len(rows), 0.5), found.depth.copy()
-    left = np.arange(len(rows))
-    for _ in range(TANGENTS):
-        rises = np.einsum("nx,nx->n", found.gradient, way[left])
-        side = left, ((rises > 0) != hollow[left]).astype(np.int64)
-        place[side], depth[side], slope[side] = ridge[left], found.depth, rises
-        worst.bites[rows[left], side[1]] = found.bite
-        where, low = _between(place[left], depth[left], slope[left])
-        left, where = left[np.abs(low) > SURELY * aim], where[np.abs(low) > SURELY * aim]
-        found = asked(rows[left], where)
-        ridge[left], height[left] = where, found.depth
-    # a parabola from each end, by its slope there, to the ridge
-    for share, rise in (
-        (0.5 * ridge, at_ends[:, 0] * ridge),
-        (0.5 + 0.5 * ridge, at_ends[:, 1] * (ridge - 1.0)),
-    ):
-        high = np.flatnonzero(rise + height > 4.0 * LIKELY * aim)
-        asked(rows[high], share[high])
+    known = np.full(len(ends), 0.5), np.zeros(len(ends)), bites[:, 0].copy(), bites
+    worst = Worst(*known, np.tile([0.0, 1.0], (len(ends), 1)))
+    ways = _Ways.of(ground, mesh, ends[rows])
+    along = _Along.at_ends(ways, bites[rows]).and_at(ways.asked(ground, QUARTERS))
+    worst.put(rows, along.highest())
+    some = along.doubtful(aim)
+    rows, ways = rows[some], ways.some(some)
+    along = along.some(some).and_at(ways.asked(ground, BETWEEN))
+    worst.put(rows, along.highest())
+    peak, height = along.peaks()
+    some = np.flatnonzero(height > np.maximum(SURELY * aim, worst.error[rows]))
+    rows, peak = rows[some], peak.of(some)
+    found = ways.some(some).at(ground, peak.share)
+    peak.depth[:], peak.bite[:] = found.depth, found.bite
+    further = peak.error >= worst.error[rows]
+    worst.put(rows[further], peak.of(further))
     return worst
 
 
-def _between(place: Floats, depth: Floats, slope: Floats) -> tuple[Floats, Floats]:
-    """Where two tangents (n, 2) are as deep, kept between their places (n, 2), and how deep that is."""
-    left, right = place.T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        base = depth - slope * place
-        met = (base[:, 1] - base[:, 0]) / (slope[:, 0] - slope[:, 1])
-    met = np.where(np.isfinite(met), met, 0.5 * (left + right))
-    edge = NEAREST * (right - left)
-    met = np.clip(met, left + edge, right - edge)
-    return met, np.abs(depth + slope * (met[:, None] - place)).max(axis=1)
+@dataclass(frozen=True, slots=True)
+class _Ways:
+    """Sides on their way from their first end to the other."""
+
+    start: Floats
+    """(n, 3) [mm]"""
+    way: Floats
+    """(n, 3) [mm]"""
+    leaf: Ints
+    """(n,) finest block that each starts in"""
+    slope: Floats
+    """(n, 2) of the field's tangents at both ends, over all of the way [mm]"""
+
+    @staticmethod
+    def of(ground: Ground, mesh: Mesh, ends: Ints) -> "_Ways":
+        """Those of sides (n, 2)."""
+        start, end = mesh.vertices[ends].transpose(1, 0, 2)
+        used, number = np.unique(ends, return_inverse=True)
+        normal = ground.sweep.evaluate(mesh.vertices[used], mesh.bite[used], gradient=True).gradient
+        slope = np.einsum("ncx,nx->nc", normal[number.reshape(-1, 2)], end - start)
+        return _Ways(start, end - start, mesh.leaf[ends[:, 0]], slope)
+
+    def some(self, rows: Ints) -> "_Ways":
+        """Some of them."""
+        return _Ways(self.start[rows], self.way[rows], self.leaf[rows], self.slope[rows])
+
+    def at(self, ground: Ground, share: Floats | float) -> Deepest:
+        """The field at a share (n,) of each way."""
+        return ground.field(self.start + np.reshape(share, (-1, 1)) * self.way, self.leaf)
+
+    def asked(self, ground: Ground, shares: tuple[float, ...]) -> "_Along":
+        """The field at the same shares of all of them."""
+        found = [self.at(ground, share) for share in shares]
+        return _Along(
+            np.array(shares),
+            np.stack([f.depth for f in found], axis=1),
+            np.stack([np.einsum("nx,nx->n", f.gradient, self.way) for f in found], axis=1),
+            np.stack([f.bite for f in found], axis=1),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Along:
+    """The field at some places along sides."""
+
+    share: Floats
+    """(k,) of the way, ascending"""
+    depth: Floats
+    """(n, k) [mm]"""
+    slope: Floats
+    """(n, k) of its tangents, over all of the way [mm]"""
+    bite: Ints
+    """(n, k) the deepest"""
+
+    @staticmethod
+    def at_ends(ways: _Ways, bites: Ints) -> "_Along":
+        """At both ends, which `bites` (n, 2) made."""
+        return _Along(np.array([0.0, 1.0]), np.zeros_like(ways.slope), ways.slope, bites)
+
+    def and_at(self, other: "_Along") -> "_Along":
+        """The same at more places."""
+        share = np.concatenate([self.share, other.share])
+        order = np.argsort(share)
+        columns = ((getattr(self, name), getattr(other, name)) for name in ("depth", "slope", "bite"))
+        return _Along(share[order], *(np.concatenate(pair, axis=1)[:, order] for pair in columns))
+
+    def some(self, rows: Ints) -> "_Along":
+        """Of some sides."""
+        return _Along(self.share, self.depth[rows], self.slope[rows], self.bite[rows])
+
+    def doubtful(self, aim: float) -> Ints:
+        """Sides that may stand off the cut by the `aim` [mm]."""
+        # into what is gone, and into metal, from either end
+        rise = self.slope[:, [0, -1]] * [1.0, -1.0]
+        fall = np.maximum(-rise, 0.0)
+        ridge = fall.prod(axis=1) / np.maximum(fall.sum(axis=1), 1e-300)
+        found = np.abs(self.depth).max(axis=1) > NEARLY * aim
+        return np.flatnonzero(found | (ridge > RIDGE * aim) | (rise.max(axis=1) > RISE * aim))
+
+    def highest(self) -> Worst:
+        """The place that stands furthest off."""
+        n, k = np.arange(len(self.depth)), np.abs(self.depth[:, 1:-1]).argmax(axis=1) + 1
+        beside = np.stack([k - 1, k + 1], axis=1)
+        bites = self.bite[n[:, None], beside]
+        return Worst(self.share[k], self.depth[n, k], self.bite[n, k], bites, self.share[beside])
+
+    def peaks(self) -> tuple[Worst, Floats]:
+        """Where the tangents of two neighbouring places meet furthest off, and how far that is (n,); 0 where
+        none do between their places."""
+        step = np.diff(self.share)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            met = self.depth[:, 1:] - self.depth[:, :-1] - self.slope[:, 1:] * step
+            met = met / (self.slope[:, :-1] - self.slope[:, 1:])
+        between = (met > NEAREST * step) & (met < (1.0 - NEAREST) * step)
+        met = np.where(between, met, 0.0)
+        height = np.where(between, np.abs(self.depth[:, :-1] + self.slope[:, :-1] * met), 0.0)
+        n, k = np.arange(len(height)), height.argmax(axis=1)
+        beside = np.stack([k, k + 1], axis=1)
+        bites = self.bite[n[:, None], beside]
+        there = Worst(self.share[k] + met[n, k], np.zeros(len(n)), bites[:, 0], bites, self.share[beside])
+        return there, height[n, k]

@@ -1,6 +1,7 @@
 """Facets of the general way: closed however they are divided, and nowhere further off than promised."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from twin.cutters.polygon_head import PolygonHead
 from twin.cutting.blank import Blank
 from twin.cutting.cut import cut
 from twin.cutting.field import DepthField
-from twin.cutting.parting import parted
+from twin.cutting.parting import across, are_joined, parted, turned
 from twin.cutting.plan import facet_limit
 
 HOB = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
@@ -19,7 +20,7 @@ SHARP = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8, tip_radius
 GEAR = Blank(diameter_mm=24.0, length_mm=2.5, bore_mm=6.0)
 LONG = Blank(diameter_mm=24.0, length_mm=14.0, bore_mm=6.0)
 BAR = Blank(diameter_mm=19.0, length_mm=3.0)
-POINTS = 1200
+POINTS = 3000
 
 
 def hobbing(synthetic, hob=HOB, *, z_end=-19.0, feed=2.0, **more):
@@ -48,6 +49,12 @@ def two_teeth_too_many(synthetic):
     return hobbing(synthetic, ratio_factor=10.0 / 12.0)
 
 
+def without_differential(synthetic):
+    """Sharp tips that cut notches into each other's flanks: edges of one bite across others' ridges."""
+    cutter, motion = hobbing(synthetic, SHARP, helix_deg=15.0)
+    return cutter, replace(motion, work_angle=motion.tool_angle / 10.0)
+
+
 JOBS = {
     "the wrong hand": (GEAR, lambda s: hobbing(s, ratio_factor=-1.0), 0.35),
     "the wrong hand, sharp tips": (GEAR, lambda s: hobbing(s, SHARP, ratio_factor=-1.0), 0.35),
@@ -56,6 +63,7 @@ JOBS = {
     "polygon with a shoulder": (BAR, square_at_twice_the_speed, 0.3),
     "stepped inserts": (BAR, stepped_inserts, 0.2),
     "thin walls": (GEAR, two_teeth_too_many, 0.3),
+    "no differential, sharp tips": (GEAR, without_differential, 0.3),
 }
 
 
@@ -101,6 +109,48 @@ def torus(around=12, across=8):
 
     one, two = (at(0, 0), at(1, 0), at(1, 1)), (at(0, 0), at(1, 1), at(0, 1))
     return vertices, np.vstack([np.column_stack(one), np.column_stack(two)])
+
+
+def directed(faces):
+    return list(zip(faces.ravel().tolist(), np.roll(faces, -1, axis=1).ravel().tolist(), strict=True))
+
+
+def test_sides_are_found_from_both_of_their_facets():
+    _, faces = torus()
+    rows = {side: divmod(at, 3) for at, side in enumerate(directed(faces))}
+    ends = np.array(list(rows))
+    facets, corners = across(faces, ends)
+    assert facets.tolist() == [row for row, _ in rows.values()]
+    assert corners.tolist() == [faces[row, (k + 2) % 3] for row, k in rows.values()]
+    # on a torus without one of its facets
+    facets, corners = across(faces[1:], ends[:3])
+    assert (facets == -1).all()
+    assert (corners == -1).all()
+    every = np.stack(np.triu_indices(int(faces.max()) + 1, 1), axis=1)
+    joined = are_joined(faces, every)
+    assert set(map(tuple, every[joined].tolist())) == {tuple(sorted(side)) for side in rows}
+
+
+def test_turned_sides_leave_a_closed_mesh():
+    vertices, faces = torus()
+    # sides of which no two are on one facet
+    ends = faces[: len(faces) // 2 : 8, :2]
+    facets, corners = (
+        np.stack(pair, axis=1) for pair in zip(across(faces, ends), across(faces, ends[:, ::-1]), strict=True)
+    )
+    assert len(np.unique(facets)) == facets.size
+    new = turned(faces, ends, facets, corners)
+    sides = directed(new)
+    assert len(set(sides)) == len(sides)
+    assert set(sides) == {(b, a) for a, b in sides}
+    gone, made = (set(map(tuple, np.sort(pairs, axis=1).tolist())) for pairs in (ends, corners))
+    assert {tuple(sorted(side)) for side in sides} == {
+        tuple(sorted(side)) for side in directed(faces)
+    } - gone | made
+    # what turning a side adds is the tetrahedron between the old diagonal and the new one
+    a, b, c, d = (vertices[v] for v in (*ends.T, *corners.T))
+    between = np.einsum("nx,nx->n", np.cross(b - a, c - a), d - a).sum() / 6.0
+    assert volume(vertices, new) - volume(vertices, faces) == pytest.approx(between, rel=1e-9)
 
 
 def volume(vertices, faces):
