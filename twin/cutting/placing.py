@@ -24,6 +24,8 @@ SLID = 0.25
 """Share of its way to an end that a point must keep"""
 WALL = 3.0
 """Cells that a wall may stand out of a side that runs through it"""
+STEPS = 12
+"""in which the top of such a wall is looked for"""
 FOUND = 1e-3
 """[mm] off the cut within which the top of a wall is found"""
 SAME = 1e-3
@@ -52,6 +54,8 @@ def placed(ground: Ground, mesh: Mesh, ends: Ints, worst: Worst, *, aim: float) 
     beyond = np.flatnonzero(worst.depth > aim)
     edges, sharp = _onto_own_edges(ground, mesh, ends, worst, beyond)
     points, walls = _onto_ridges(ground, worst, points, leaf)
+    rows = np.flatnonzero(walls)
+    points[rows] = _onto_tops(ground, points[rows], _upwards(mesh, ends[rows]), leaf[rows])
     led = np.zeros(len(points), dtype=bool)
     led[beyond[sharp]] = True
     points[led] = edges[sharp]
@@ -130,6 +134,37 @@ def _onto_ridges(ground: Ground, worst: Worst, points: Floats, leaf: Ints) -> tu
     walls = np.zeros(len(points), dtype=bool)
     walls[rows] = np.abs(there) > FOUND
     return points, walls
+
+
+def _upwards(mesh: Mesh, ends: Ints) -> Floats:
+    """Out of the metal (n, 3), at right angles to the facets on sides (n, 2)."""
+    a, b = mesh.vertices[ends].transpose(1, 0, 2)
+    _, c = across(mesh.faces, ends)
+    _, d = across(mesh.faces, ends[:, ::-1])
+    inwards = np.cross(b - a, mesh.vertices[c] - a) + np.cross(a - b, mesh.vertices[d] - b)
+    return -inwards / np.maximum(np.linalg.norm(inwards, axis=1, keepdims=True), 1e-300)
+
+
+def _onto_tops(ground: Ground, points: Floats, up: Floats, leaf: Ints) -> Floats:
+    """Points (n, 3) in walls whose flanks meet too far away, brought `upwards` (n, 3) onto what cuts off the
+    tops, where that comes within WALL cells."""
+    points = points.copy()
+    reach = WALL * min(ground.grid.cell_mm) * up
+    low, below = points.copy(), ground.field(points, leaf).depth
+    left = np.flatnonzero(below < -FOUND)
+    for share in np.linspace(0.0, 1.0, STEPS + 1)[1:]:
+        there = points[left] + share * reach[left]
+        depth = np.where(ground.passed(there), ground.field(there, leaf[left]).depth, -np.inf)
+        out = depth > 0
+        rows, ends = left[out], (low[left[out]], there[out])
+        found = between(
+            lambda at, of, rows=rows: ground.field(at, leaf[rows[of]]).depth, ends, (below[rows], depth[out])
+        )
+        left = left[~out & np.isfinite(depth)]
+        low[left] = points[left] + share * reach[left]
+        below[left] = ground.field(low[left], leaf[left]).depth
+        points[rows] = found
+    return points
 
 
 def _onto_own_edges(ground: Ground, mesh: Mesh, ends: Ints, worst: Worst, rows: Ints) -> tuple[Floats, Bools]:
