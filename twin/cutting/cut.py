@@ -20,7 +20,7 @@ from twin.cutting.grid import Grid
 from twin.cutting.landing import Ground
 from twin.cutting.moments import face_moments, moments
 from twin.cutting.motion import CutterMotion
-from twin.cutting.plan import CORE, facet_limit, plan_grid, useful
+from twin.cutting.plan import CORE, facet_limit, plan_grid, useful, working_memory
 from twin.cutting.refine import refine
 from twin.cutting.regular.irregular import IrregularError
 from twin.cutting.regular.regular import Regular, regular_cut
@@ -166,7 +166,7 @@ def _general(
     blank: Blank, sweep: Sweep, grid: Grid, *, limit: float, closest: float, progress: Progress
 ) -> _Made:
     """On a cylindrical grid, whatever the tools do, with facets within `limit` of the cut [mm]."""
-    leaves = refine(sweep, grid)
+    leaves = refine(sweep, grid, allowed=working_memory())
     progress("crossings", 0.5)
     depth = node_depths(sweep, grid, leaves)
     none = Errors(np.zeros((0, 3)), np.zeros(0))

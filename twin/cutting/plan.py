@@ -1,6 +1,7 @@
 """The grid of a cut, and what it will need, before any work is done."""
 
 import math
+import os
 from collections.abc import Iterable
 
 from twin.cutters.cutter import Cutter
@@ -97,6 +98,15 @@ def facet_limit(
     """
     share = tolerance_um if cell_mm is None else (cell_mm / _cell(blank, cutters)) ** 2
     return FACETS * 1e-3 * share
+
+
+def working_memory() -> float:
+    """[bytes] that a search may take that turns out to need more than was planned: half of the machine's."""
+    try:
+        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return ALLOWED
+    return max(ALLOWED, whole / 2)
 
 
 def _memory(blank: Blank, low: float, cell: float) -> float:

@@ -9,6 +9,7 @@ that the judge removes whole, a block that no bite touches, or a block to halve,
 the deepest in it.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -20,6 +21,7 @@ from twin.cutting.local import ROUNDING, Tangents, can_matter, joined, without_b
 from twin.cutting.meeting import Meeting
 from twin.cutting.pairs import LISTED, Candidates, batches, in_parallel, leaders
 from twin.cutting.sweep import Sweep
+from twin.errors import PartError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,6 +29,8 @@ Bools = NDArray[np.bool_]
 
 LEAF = 2
 """Cells along the edge of the finest block."""
+PER_PAIR = 120
+"""[bytes] of a pair of block and bite while it is searched: its tangent, a copy, and what it is made of"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +61,11 @@ class Culled:
     """pairs of block and bite that were evaluated"""
 
 
-def refine(sweep: Sweep, grid: Grid) -> Leaves:
-    """Halve the grid's blocks down to the cut surface."""
+def refine(sweep: Sweep, grid: Grid, *, allowed: float = math.inf) -> Leaves:
+    """Halve the grid's blocks down to the cut surface.
+
+    Raises PartError where the bites that may matter there would take more than `allowed` [bytes].
+    """
     nr, nt, nz = grid.cells
     axes = (np.arange(0, nr, BLOCK), np.arange(0, nt, BLOCK), np.arange(0, nz, BLOCK))
     low = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -69,6 +76,7 @@ def refine(sweep: Sweep, grid: Grid) -> Leaves:
     done = first_cull(sweep, middle, corners)
     pairs = done.pairs
     while True:
+        _check_memory(done.tangents, allowed)
         removed.append((low[done.whole], size))
         closing.append(_closing(grid, low[done.whole], size))
         low, tangents = low[done.alive], done.tangents
@@ -81,6 +89,18 @@ def refine(sweep: Sweep, grid: Grid) -> Leaves:
     shut = np.concatenate(closing)
     tangents = joined([tangents, without_bites(grid.hulls(shut, LEAF)[0])])
     return Leaves(np.concatenate([low, shut]), tangents, removed, pairs)
+
+
+def _check_memory(tangents: Tangents, allowed: float) -> None:
+    """Raise PartError where so many bites leave no memory for the blocks' eighths."""
+    pairs, blocks = len(tangents.lists.bites), tangents.lists.count
+    if pairs * PER_PAIR > allowed:
+        raise PartError(
+            f"the search for the cut surface outgrows the {allowed / 2**30:.2g} GiB of memory it may take: "
+            f"{blocks} blocks with {pairs / blocks:.0f} bites each that may have made it, as where a tool "
+            "stands in the stock and trembles",
+            remedy="valid: a tool that leaves the stock before it stops, or a larger --cell-mm",
+        )
 
 
 def _closing(grid: Grid, low: Ints, size: int) -> Ints:

@@ -10,8 +10,8 @@ import pytest
 from twin.cutters.hob import Hob
 from twin.cutting.blank import Blank
 from twin.cutting.cut import cut
-from twin.cutting.plan import ALLOWED, plan_grid
-from twin.errors import InputError
+from twin.cutting.plan import ALLOWED, plan_grid, working_memory
+from twin.errors import InputError, PartError
 
 HOB = Hob(normal_module_mm=2.0, outside_diameter_mm=70.0)
 BLANK = Blank(diameter_mm=44.0, length_mm=20.0, bore_mm=12.0)
@@ -108,3 +108,22 @@ def test_a_cut_with_a_cell_wider_than_the_blank_ends_soon(synthetic):
     wide, widest = (cut(small, (tool,), cell_mm=cell) for cell in (1e6, small.radius / 20.0))
     assert wide.cell_mm == widest.cell_mm
     assert wide.remains.volume_mm3 == widest.remains.volume_mm3
+
+
+def test_a_search_that_outgrows_the_memory_ends_with_a_word(synthetic, monkeypatch):
+    """What only shows while it is searched, as a tool that trembles in the stock."""
+    small = Blank(diameter_mm=24.0, length_mm=2.0, bore_mm=6.0)
+    hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
+    tool = synthetic.hobbing(
+        hob, teeth=10, tip_x=7.5, z=(1.0, -3.0), feed=2.0, step_deg=10, ratio_factor=-1.0
+    )
+    assert cut(small, (tool,), cell_mm=0.4).method.startswith("general")
+    monkeypatch.setattr("twin.cutting.cut.working_memory", lambda: 2.0**15)
+    with pytest.raises(
+        PartError, match=r"outgrows the 3.1e-05 GiB .* blocks with \d+ bites each .* --cell-mm"
+    ):
+        cut(small, (tool,), cell_mm=0.4)
+
+
+def test_a_search_may_take_as_much_as_any_plan():
+    assert working_memory() >= ALLOWED
