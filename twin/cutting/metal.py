@@ -16,7 +16,7 @@ Bools = NDArray[np.bool_]
 ASIDE = 1e-4
 """[mm] between places that the slope of the blank's outline is told by"""
 SHORT = 1e-9
-"""share of a slab that is left out below its upper side"""
+"""share of a slab that is left out at its sides"""
 
 
 class Metal:
@@ -26,8 +26,9 @@ class Metal:
     def __init__(self, sweep: Sweep, blank: Blank, blocks: Blocks) -> None:
         self._sweep, self._blank, self._blocks = sweep, blank, blocks
         low, high = blocks.z_range
-        # the upper side of a slab is in the next one's blocks, of which nothing is known here
-        high -= SHORT * (high - low)
+        # a slab's upper side, and by rounding its lower, is in the next one's blocks, unknown here
+        short = SHORT * (high - low)
+        low, high = low + short, high - short
         self._low = np.array([blank.bore_mm / 2.0, -np.inf, low])
         self._high = np.array([blank.radius, np.inf, high])
 
