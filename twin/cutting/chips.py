@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from twin.cutters.cutter import Cutter
 from twin.cutting.blank import Blank
 from twin.cutting.blocks import Blocks
-from twin.cutting.cells import Cells, points
+from twin.cutting.cells import Cells
 from twin.cutting.engaged import Edges, Engaged, engaged
 from twin.cutting.field import DepthField
 from twin.cutting.fields import tool_field
+from twin.cutting.height import above
 from twin.cutting.metal import Metal
 from twin.cutting.motion import CutterMotion
 from twin.cutting.owners import owned
@@ -188,17 +189,16 @@ def _slab(
     for part in owned(sweep, cells, blocks):
         own = part if blank.section is None else part.within(blank.section)
         at = np.stack([own.at(share) for share in (0.0, 0.5, 1.0)], axis=1)
-        met = [sweep.evaluate(points(where), own.bite) for where in at.transpose(1, 0, 2)]
-        height = np.stack([np.maximum(meeting.depth, 0.0) for meeting in met], axis=1)
+        bite, height, met = above(sweep, at, own.bite)
         best = height.argmax(axis=1)
         each = np.arange(len(best))
-        shares = _Shares(own.bite, own.volume, height @ SIMPSON, height[each, best], met[1].instant)
-        stretch = sweep.tool(own.bite)
-        number = own.bite - sweep.first(stretch)
+        shares = _Shares(bite, own.volume, height @ SIMPSON, height[each, best], met.instant)
+        stretch = sweep.tool(bite)
+        number = bite - sweep.first(stretch)
         for tool, one in enumerate(edges):
             if one is not None:
                 rows = np.flatnonzero(stretch == tool)
-                middle = met[1].of(rows)
+                middle = met.of(rows)
                 feet[tool].append(
                     (number[rows], *one.foot(number[rows], middle.s, middle.rho, middle.instant))
                 )

@@ -224,3 +224,46 @@ def test_chips_of_a_gear_that_has_its_gaps_are_what_grinding_takes_off(synthetic
     lost = part.blank_volume_mm3 - part.volume_mm3
     assert 2.0 < lost < 8.0
     assert made.total_mm3 == pytest.approx(lost, rel=0.01)
+
+
+@pytest.mark.parametrize("name", ["wheel", "stepped insert"])
+def test_height_is_that_above_all_pieces_of_an_outline(synthetic, name):
+    """Thickness against random points of the first pass that cuts, in the deepest piece of its outline."""
+    if name == "wheel":
+        gear = GearNominal(number_of_teeth=12, normal_module_mm=3.0)
+        law = geometry(gear)
+        blank = Blank(diameter_mm=law.tip_diameter, length_mm=1.0, bore_mm=26.0)
+        cutter, motion = synthetic.grinding(
+            GapWheel(outside_diameter_mm=60.0, chord_um=5.0).dressed(gear), teeth=12, module=3.0,
+            tip_x=law.root_diameter / 2, z=(16.0, -17.0), gaps=1, samples=200,
+        )  # fmt: skip
+    else:
+        blank = Blank(diameter_mm=20.0, length_mm=2.0)
+        head = PolygonHead(
+            inserts=1, tip_radius_mm=35.0,
+            profile=((0.3, 0.0), (0.4, 0.5), (0.8, 0.5), (0.9, 1.0), (1.2, 4.0)),
+        )  # fmt: skip
+        cutter, motion = synthetic.polygon_turning(
+            head, ratio=1, across_flats=17.0, work_turns=1, z=(-1.0, -1.0), step_deg=1.0
+        )
+    made = chips(blank, ((cutter, motion),), resolution_mm=0.1)
+    field = tool_field(cutter, motion, blank.radius / math.cos(math.pi / 6.0), blank.z_range)
+    assert field.bites > 1
+    rng = np.random.default_rng(0)
+    n = 300_000
+    low = max(blank.bore_mm / 2.0, 8.0)
+    r, angle = np.sqrt(rng.uniform(low**2, blank.radius**2, n)), rng.uniform(0.0, 2.0 * math.pi, n)
+    points = np.column_stack([r * np.cos(angle), r * np.sin(angle), rng.uniform(-blank.length_mm, 0.0, n)])
+    depth = field.evaluate(points, np.full(n, made.turn[0])).depth
+    height = depth[depth > 0]
+    assert len(height) > 2000
+    assert made.thickness_mean_mm[0] == pytest.approx(2.0 * height.mean(), rel=0.03)
+    # on from the highest of them, by ever shorter steps at random
+    best, top = points[depth.argmax()], depth.max()
+    for reach in np.geomspace(0.3, 1e-4, 60):
+        near = best + rng.uniform(-reach, reach, (200, 3))
+        near = near[blank.contains(near)]
+        level = field.evaluate(near, np.full(len(near), made.turn[0])).depth
+        if len(near) and level.max() > top:
+            best, top = near[level.argmax()], level.max()
+    assert made.thickness_max_mm[0] == pytest.approx(top, rel=5e-3)
