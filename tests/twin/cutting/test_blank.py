@@ -80,8 +80,11 @@ def test_gear_on_a_chamfered_hub_keeps_tip_chamfer_and_hub(synthetic):
     assert not hub.any()
     # tooth tips on both cones
     for low, high in ((-3.9, -3.1), (-8.9, -8.1)):
-        on = (z > low) & (z < high) & (np.abs(r - outer) < 1e-6)
-        assert on.sum() > 10
+        on = (z > low) & (z < high) & (np.abs(r - outer) < GRID)
+        angle = np.sort(np.arctan2(part.vertices[on, 1], part.vertices[on, 0]))
+        # ten tips with as wide a gap behind each, of two thirds of the pitch
+        gaps = np.degrees(np.diff(angle, append=angle[0] + 2.0 * math.pi))
+        assert gaps[gaps > 10.0] == pytest.approx(10 * [24.8], abs=0.8)
     # full depth on the collar
     collar = (z < -4.1) & (z > -7.9) & (r > 3.5)
     assert r[collar].min() == pytest.approx(7.5, abs=2.0**2 / (4 * 40.0) + 1e-3)
