@@ -11,12 +11,10 @@ def parted(faces: Ints, ends: Ints, first: int) -> tuple[Ints, Ints]:
 
     A facet with one divided side becomes two, with two sides three, with three sides four.
     """
-    marked = np.zeros(first, dtype=bool)
-    marked[ends] = True
-    near = np.flatnonzero(marked[faces].sum(axis=1) > 1)
+    near, _ = _near(faces, ends)
     order = np.lexsort((ends[:, 1], ends[:, 0]))
     keys = ends[order, 0] * first + ends[order, 1]
-    pairs = np.sort(np.stack([faces[near], np.roll(faces[near], -1, axis=1)], axis=2), axis=2)
+    pairs = pairs_of(faces[near])
     wanted = pairs[..., 0] * first + pairs[..., 1]
     at = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))
     middle = np.where(keys[at] == wanted, first + order[at], -1) if len(keys) else np.full(wanted.shape, -1)
@@ -44,6 +42,17 @@ def parted(faces: Ints, ends: Ints, first: int) -> tuple[Ints, Ints]:
     return np.concatenate([kept, new]), len(kept) + np.arange(len(new))
 
 
+def pairs_of(faces: Ints) -> Ints:
+    """The ends (m, 3, 2) of the sides of facets (m, 3), the lower number first."""
+    return np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2)
+
+
+def both_across(faces: Ints, ends: Ints) -> tuple[Ints, Ints]:
+    """Both facets (n, 2) on sides (n, 2), and their third corners (n, 2): `across` along and against."""
+    one, other = across(faces, ends), across(faces, ends[:, ::-1])
+    return np.stack([one[0], other[0]], axis=1), np.stack([one[1], other[1]], axis=1)
+
+
 def across(faces: Ints, ends: Ints) -> tuple[Ints, Ints]:
     """The facet (n,) in which each side (n, 2) runs from its first end to its second, and that facet's third
     corner (n,); −1 where there is none."""
@@ -62,8 +71,7 @@ def across(faces: Ints, ends: Ints) -> tuple[Ints, Ints]:
 def are_joined(faces: Ints, pairs: Ints) -> NDArray[np.bool_]:
     """Which pairs (n, 2) of vertices have a side between them."""
     near, count = _near(faces, pairs)
-    sides = np.sort(np.stack([faces[near], np.roll(faces[near], -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    return among(np.sort(pairs, axis=1), sides, count)
+    return among(np.sort(pairs, axis=1), pairs_of(faces[near]).reshape(-1, 2), count)
 
 
 def among(pairs: Ints, some: Ints, count: int) -> NDArray[np.bool_]:
@@ -74,7 +82,7 @@ def among(pairs: Ints, some: Ints, count: int) -> NDArray[np.bool_]:
 def turned(faces: Ints, ends: Ints, facets: Ints, corners: Ints) -> Ints:
     """Facets whose common sides (n, 2) run between the third `corners` (n, 2) of both instead.
 
-    `facets` and `corners` are those found by `across` for the sides as they are, and the other way.
+    `facets` and `corners` (n, 2) are those of `both_across`.
     """
     faces = faces.copy()
     (a, b), (c, d) = ends.T, corners.T

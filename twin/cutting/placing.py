@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.landing import SETTLED, Ground, between, newton
-from twin.cutting.parting import across
+from twin.cutting.parting import both_across
 from twin.cutting.planes import onto_corners, onto_edges
 from twin.cutting.sides import Mesh, Worst, lengths
 
@@ -75,14 +75,14 @@ def _taken(points: Floats, mesh: Mesh, ends: Ints) -> tuple[Bools, Ints]:
 
     Without that, what runs beside a step of the surface could be divided at the same places for ever.
     """
-    facets, corners = zip(across(mesh.faces, ends), across(mesh.faces, ends[:, ::-1]), strict=True)
-    corner = np.concatenate([ends, np.stack(corners, axis=1)], axis=1)
+    facets, corners = both_across(mesh.faces, ends)
+    corner = np.concatenate([ends, corners], axis=1)
     away = np.linalg.norm(points[:, None] - mesh.vertices[corner], axis=2)
     taken = (away < SAME).any(axis=1)
     n = np.arange(len(points))
     nearest = 2 + away[:, 2:].argmin(axis=1)
     there = np.where(away[n, nearest] < SAME, corner[n, nearest], -1)
-    facet = np.concatenate(facets)
+    facet = facets.T.ravel()
     order = np.argsort(facet, kind="stable")
     # a facet has up to three divided sides
     for step in (1, 2):
@@ -139,9 +139,8 @@ def _onto_ridges(ground: Ground, worst: Worst, points: Floats, leaf: Ints) -> tu
 def _upwards(mesh: Mesh, ends: Ints) -> Floats:
     """Out of the metal (n, 3), at right angles to the facets on sides (n, 2)."""
     a, b = mesh.vertices[ends].transpose(1, 0, 2)
-    _, c = across(mesh.faces, ends)
-    _, d = across(mesh.faces, ends[:, ::-1])
-    inwards = np.cross(b - a, mesh.vertices[c] - a) + np.cross(a - b, mesh.vertices[d] - b)
+    c, d = mesh.vertices[both_across(mesh.faces, ends)[1]].transpose(1, 0, 2)
+    inwards = np.cross(b - a, c - a) + np.cross(a - b, d - b)
     return -inwards / np.maximum(np.linalg.norm(inwards, axis=1, keepdims=True), 1e-300)
 
 
@@ -160,10 +159,10 @@ def _onto_tops(ground: Ground, points: Floats, up: Floats, leaf: Ints) -> Floats
         found = between(
             lambda at, of, rows=rows: ground.field(at, leaf[rows[of]]).depth, ends, (below[rows], depth[out])
         )
-        left = left[~out & np.isfinite(depth)]
-        low[left] = points[left] + share * reach[left]
-        below[left] = ground.field(low[left], leaf[left]).depth
         points[rows] = found
+        inside = ~out & np.isfinite(depth)
+        left = left[inside]
+        low[left], below[left] = there[inside], depth[inside]
     return points
 
 

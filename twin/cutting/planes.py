@@ -12,8 +12,6 @@ Bools = NDArray[np.bool_]
 FEATURE = 3e-5
 """Share of an eigenvalue of the normals' scatter above which planes are taken to meet in that direction: more
 than about 0.6° apart, as feed marks and generating flats are."""
-SHARP = 3e-5
-"""Share of an eigenvalue as above from which planes (16° apart) meet at an edge that a bite may have"""
 STEPS = 2
 """of Newton's method onto an edge"""
 PULLED = 0.5, 0.15, 0.04
@@ -73,6 +71,6 @@ def onto_corners(
         found = sweep.evaluate(points[owner] + off, bite[owner], gradient=True)
         height = np.einsum("nx,nx->n", found.gradient, off) - found.depth
         step, values = meet(owner, found.gradient, height, len(points))
-        sharp &= (values[:, 1] > SHARP * values[:, 2]) & (np.linalg.norm(step, axis=1) < longest)
+        sharp &= (values[:, 1] > FEATURE * values[:, 2]) & (np.linalg.norm(step, axis=1) < longest)
         points[sharp] += step[sharp]
     return points, sharp

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.landing import Ground
+from twin.cutting.parting import pairs_of
 from twin.cutting.sweep import Deepest
 
 Floats = NDArray[np.float64]
@@ -90,7 +91,7 @@ class Worst:
 
 def sides_of(faces: Ints) -> Sides:
     """The sides of facets (m, 3)."""
-    pairs = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    pairs = pairs_of(faces).reshape(-1, 2)
     count = int(pairs.max(initial=0)) + 1
     keys, row = np.unique(pairs[:, 0] * count + pairs[:, 1], return_inverse=True)
     return Sides(np.stack(np.divmod(keys, count), axis=1), row.reshape(-1, 3))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.cutting.landing import Ground
-from twin.cutting.parting import across, are_joined, turned
+from twin.cutting.parting import are_joined, both_across, turned
 from twin.cutting.sides import Mesh
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ def unflattened(
     """
     ends = np.concatenate([stuck, _longest_of_flat(mesh, asked)])
     first = np.arange(len(ends)) < len(stuck)
-    facets, corners = _on(mesh.faces, ends)
+    facets, corners = both_across(mesh.faces, ends)
     good = (facets >= 0).all(axis=1) & (corners[:, 0] != corners[:, 1])
     good &= (mesh.bite[corners] >= 0).all(axis=1) & ~are_joined(mesh.faces, corners)
     rows = np.flatnonzero(good)
@@ -63,12 +63,6 @@ def _longest_of_flat(mesh: Mesh, asked: Ints) -> Ints:
     flat = np.flatnonzero(cosine > FLAT)
     flat = flat[np.argsort(-cosine[flat], kind="stable")]
     return np.stack([faces[flat, k[flat]], faces[flat, one[flat]]], axis=1)
-
-
-def _on(faces: Ints, ends: Ints) -> tuple[Ints, Ints]:
-    """Both facets (n, 2) on sides (n, 2), −1 = none, and their third corners (n, 2)."""
-    one, other = across(faces, ends), across(faces, ends[:, ::-1])
-    return np.stack([one[0], other[0]], axis=1), np.stack([one[1], other[1]], axis=1)
 
 
 def _once(groups: Ints) -> Bools:

@@ -125,5 +125,13 @@ def test_a_search_that_outgrows_the_memory_ends_with_a_word(synthetic, monkeypat
         cut(small, (tool,), cell_mm=0.4)
 
 
-def test_a_search_may_take_as_much_as_any_plan():
-    assert working_memory() >= ALLOWED
+@pytest.mark.parametrize(("gib", "allowed"), [(1, ALLOWED), (3, ALLOWED), (64, 32 << 30)])
+def test_a_search_may_take_half_of_the_memory_and_as_much_as_any_plan(gib, allowed, monkeypatch):
+    sizes = {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": gib << 18}
+    monkeypatch.setattr("os.sysconf", sizes.__getitem__)
+    assert working_memory() == allowed
+
+
+def test_a_machine_that_does_not_tell_its_memory_is_a_small_one(monkeypatch):
+    monkeypatch.delattr("os.sysconf")
+    assert working_memory() == ALLOWED

@@ -61,6 +61,17 @@ def test_least_radius_between_heights_sees_every_step():
     assert blank.least_radius(low, high) == pytest.approx(sampled, abs=1e-3)
 
 
+def involute_gap(radius, *, module=2.0, teeth=10):
+    """Angle of a gap at a radius of a gear of 20° without profile shift [rad] (ISO 21771, 4.4)."""
+
+    def involute(angle):
+        return math.tan(angle) - angle
+
+    normal = math.radians(20.0)
+    there = math.acos(0.5 * module * teeth * math.cos(normal) / radius)
+    return 2.0 * (0.5 * math.pi / teeth - involute(normal) + involute(there))
+
+
 def test_gear_on_a_chamfered_hub_keeps_tip_chamfer_and_hub(synthetic):
     """Teeth on the middle collar only; the hub below the root and the chamfers stay as they were turned."""
     hob = Hob(normal_module_mm=2.0, outside_diameter_mm=40.0, gashes=8)
@@ -82,9 +93,12 @@ def test_gear_on_a_chamfered_hub_keeps_tip_chamfer_and_hub(synthetic):
     for low, high in ((-3.9, -3.1), (-8.9, -8.1)):
         on = (z > low) & (z < high) & (np.abs(r - outer) < GRID)
         angle = np.sort(np.arctan2(part.vertices[on, 1], part.vertices[on, 0]))
-        # ten tips with as wide a gap behind each, of two thirds of the pitch
-        gaps = np.degrees(np.diff(angle, append=angle[0] + 2.0 * math.pi))
-        assert gaps[gaps > 10.0] == pytest.approx(10 * [24.8], abs=0.8)
+        # ten tips; behind each the gap of the involute gear, at a radius of the cone
+        gaps = np.diff(angle, append=angle[0] + 2.0 * math.pi)
+        gaps = gaps[gaps > math.radians(10.0)]
+        assert len(gaps) == 10
+        # feed marks leave some 20 µm on the flanks
+        assert ((involute_gap(11.1) - 4e-3 < gaps) & (gaps < involute_gap(11.9))).all()
     # full depth on the collar
     collar = (z < -4.1) & (z > -7.9) & (r > 3.5)
     assert r[collar].min() == pytest.approx(7.5, abs=2.0**2 / (4 * 40.0) + 1e-3)
